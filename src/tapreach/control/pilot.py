@@ -1,0 +1,29 @@
+"""What a task may ask of the wheels and the arm. The control loop carries it out, gated like any operator."""
+
+from typing import Protocol
+
+from tapreach.errors import TapreachError
+from tapreach.robot.messages import ArmPose, Odometry
+
+
+class MotionInterrupted(TapreachError):
+    """A task's motion was ended by somebody else: cancel, stop, operator gone, robot lost. Says which."""
+
+
+class Pilot(Protocol):
+    """Relative moves by odometry, with ramps. One at a time; every one ends with zero speed.
+
+    Each method raises MotionInterrupted when the gate, the operator or the robot ends the move.
+    """
+
+    async def turn(self, angle: float) -> Odometry:
+        """Turn on the spot by `angle` [rad, left positive]; return the odometry once at rest."""
+        ...
+
+    async def advance(self, distance: float) -> Odometry:
+        """Drive straight by `distance` [m, may be negative]; return the odometry once at rest."""
+        ...
+
+    async def move_arm(self, target: ArmPose) -> None:
+        """Send the arm to `target` and return when it has come to rest."""
+        ...

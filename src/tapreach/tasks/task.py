@@ -1,0 +1,84 @@
+"""What a task is: a coroutine with phases that anyone can see and stop."""
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol, TypeVar
+
+from tapreach.control.pilot import Pilot
+from tapreach.estimation.pose_history import PoseHistory
+from tapreach.robot.clock import Clock
+from tapreach.robot.config import RobotDescription
+from tapreach.robot.frame_store import FrameStore
+from tapreach.robot.interface import Robot
+from tapreach.robot.messages import Frame
+from tapreach.tasks.target import Target
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True)
+class Tap:
+    """A touched pixel of the frame that was on the screen."""
+
+    frame_id: int
+    u: float
+    v: float
+
+
+class TaskState(StrEnum):
+    """Where a task stands."""
+
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True, slots=True)
+class TaskReport:
+    """One line for the page: phase, progress from 0 to 1, and a sentence."""
+
+    phase: str
+    progress: float
+    message: str
+
+
+class Compute(Protocol):
+    """Runs plain functions where they cannot hold up the control loop: in another process, or in place in tests."""
+
+    async def call(self, function: Callable[..., T], *arguments: object) -> T:
+        """Run a module-level function with picklable arguments. Errors come back as raised."""
+        ...
+
+
+@dataclass(frozen=True)
+class TaskContext:
+    """All that a task may touch."""
+
+    description: RobotDescription
+    robot: Robot
+    pilot: Pilot
+    frames: FrameStore
+    poses: PoseHistory
+    compute: Compute
+    clock: Clock
+    next_frame: Callable[[int], Awaitable[Frame]]
+    """Wait for a frame newer than the given id. Raises LinkLost when the camera is silent for 2 s."""
+    report: Callable[[TaskReport], None]
+    """Show a line on the page."""
+    show_target: Callable[[Target], None]
+    """Show or update a target on the page (newest wins, by target_id)."""
+
+
+class Task(Protocol):
+    """Something the robot does by itself, under the eyes of an operator."""
+
+    kind: str
+
+    async def run(self, context: TaskContext) -> str:
+        """Do it and return the closing sentence. Raises TapreachError with a reason when it cannot be done.
+
+        Cancellation arrives as asyncio.CancelledError; the wheels are then already stopped.
+        """
+        ...
