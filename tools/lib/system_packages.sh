@@ -1,0 +1,35 @@
+# shellcheck shell=sh
+# Debian and Ubuntu packages: collected first, then asked for once.
+
+missing_packages=""
+
+want_package() { missing_packages="$missing_packages $*"; }
+
+apt_line() { printf 'apt-get update && %sapt-get install -y --no-install-recommends%s' "${1:-}" "$missing_packages"; }
+
+by_hand_line() {
+  if [ "$(id -u)" = 0 ]; then apt_line; else printf 'sudo %s' "$(apt_line 'sudo ')"; fi
+}
+
+# Returns 0 when everything collected is installed; 1 when it may not or cannot be.
+install_packages() {
+  [ -n "$missing_packages" ] || return 0
+  has apt-get || return 1
+  if [ "$(id -u)" = 0 ]; then
+    step "Installing system packages:$missing_packages"
+    run_apt ""
+  elif has sudo && confirm "System packages are missing:$missing_packages. Install them with sudo?"; then
+    step "Installing system packages:$missing_packages (sudo may ask for your password)"
+    run_apt sudo
+  else
+    return 1
+  fi
+}
+
+run_apt() {
+  # `env` carries the answer to questions through sudo; lists may be empty or old on a fresh machine.
+  # shellcheck disable=SC2086  # both are lists of words
+  $1 env DEBIAN_FRONTEND=noninteractive apt-get update -qq &&
+    $1 env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing_packages </dev/null &&
+    missing_packages=""
+}
