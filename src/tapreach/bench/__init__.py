@@ -1,0 +1,1 @@
+"""Row 6: measurements; each prints a table and writes JSON."""

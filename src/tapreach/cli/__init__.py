@@ -1,0 +1,1 @@
+"""Row 7: commands. The only place that composes everything and names drivers."""

@@ -1,0 +1,1 @@
+"""Row 3: who may move the robot, and how fast."""

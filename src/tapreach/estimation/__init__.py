@@ -1,0 +1,1 @@
+"""Row 2: rays to points. Knows no picture and no robot."""

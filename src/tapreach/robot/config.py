@@ -1,4 +1,4 @@
-"""The robot file (`robots/*.toml`), validated. Lengths in metres; angles in degrees, since a person types them."""
+"""The robot file (`robots/*.toml`), validated. Lengths in metres; angles a person types in degrees."""
 
 from math import radians
 from pathlib import Path
@@ -96,11 +96,13 @@ class ArmPoseSection(Section):
 
     def pose(self) -> ArmPose:
         """Return it in radians."""
-        return ArmPose(radians(self.rotation_deg), radians(self.shoulder_deg), radians(self.elbow_deg), self.claw)
+        return ArmPose(
+            radians(self.rotation_deg), radians(self.shoulder_deg), radians(self.elbow_deg), self.claw
+        )
 
 
 class ArmSection(Section):
-    """The paper's arm: A turns it, B and C move it in a plane, a linkage keeps the claw level, D is the claw."""
+    """The paper's arm: A turns it, B and C move it in a plane, a linkage keeps it level, D is the claw."""
 
     shoulder_forward: Finite = Field(description="axis of B ahead of the wheel axis [m]; on the axis of A")
     shoulder_up: Positive = Field(description="axis of B above the floor [m]")
@@ -124,7 +126,9 @@ class RobotDescription(Section):
     camera: CameraSection
     base: BaseSection
     arm: ArmSection
-    simulation: dict[str, object] = Field(default_factory=dict, description="scene and faults; see drivers/sim")
+    simulation: dict[str, object] = Field(
+        default_factory=dict, description="scene and faults; see drivers/sim"
+    )
 
 
 def load_robot(path: Path) -> RobotDescription:

@@ -1,0 +1,1 @@
+"""Row 5: the ASGI app: sockets, sessions, video, access."""

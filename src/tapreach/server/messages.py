@@ -1,7 +1,8 @@
 """Every message of the control socket, as JSON objects told apart by `type`.
 
 This file is the one definition: `web/net/messages.js` and `docs/protocol.md` are generated from it.
-Each message from the page carries `seq` and is answered by exactly one `ack` (or `pong`, `welcome`) with that number.
+Each message from the page carries `seq` and is answered by exactly one `ack` (or `pong`, `welcome`)
+with that number.
 """
 
 from typing import Annotated, Literal
@@ -343,7 +344,9 @@ class TargetView(Message):
     range: float | None
     range_low: float | None
     range_high: float | None = Field(description="null: open")
-    region_in_world: tuple[tuple[float, float], ...] = Field(description="outline of the 95 % region on the floor")
+    region_in_world: tuple[tuple[float, float], ...] = Field(
+        description="outline of the 95 % region on the floor"
+    )
     rays_in_world: tuple[tuple[float, float, float, float], ...] = Field(description="x, y, direction x, y")
     is_following: bool
 
@@ -380,6 +383,4 @@ class CapturesChanged(Message):
     newest: str | None
 
 
-FromServer = (
-    Welcome | Pong | Ack | State | TaskView | TargetView | TargetGone | GuideView | CapturesChanged
-)
+FromServer = Welcome | Pong | Ack | State | TaskView | TargetView | TargetGone | GuideView | CapturesChanged

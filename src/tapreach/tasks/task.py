@@ -45,7 +45,7 @@ class TaskReport:
 
 
 class Compute(Protocol):
-    """Runs plain functions where they cannot hold up the control loop: in another process, or in place in tests."""
+    """Runs plain functions where they cannot hold up the control loop: in another process."""
 
     async def call(self, function: Callable[..., T], *arguments: object) -> T:
         """Run a module-level function with picklable arguments. Errors come back as raised."""

@@ -1,0 +1,1 @@
+"""Row 2: pictures to pixels. Knows no pose."""

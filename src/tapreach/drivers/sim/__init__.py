@@ -1,0 +1,1 @@
+"""The simulated robot: MuJoCo physics and rendering in a process of its own."""
