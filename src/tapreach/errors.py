@@ -6,6 +6,9 @@
     ├── FrameError
     │   ├── FrameUnknown    no frame of this id was ever stored
     │   └── FrameExpired    the frame was stored and has been dropped since
+    ├── PoseError
+    │   ├── PoseExpired     the pose at this time was known and has been dropped since
+    │   └── PoseNotYetKnown the time lies after the newest pose
     ├── DriverError         the robot or its link does not do what was asked
     │   └── LinkLost        the link to the robot is gone
     └── SetupError          something is missing on this machine; says how to get it
@@ -34,6 +37,18 @@ class FrameUnknown(FrameError):
 
 class FrameExpired(FrameError):
     """The frame was stored and has been dropped since."""
+
+
+class PoseError(TapreachError):
+    """The pose at the time asked for is not there."""
+
+
+class PoseExpired(PoseError):
+    """The pose at this time was known and has been dropped since, or is from before the first pose."""
+
+
+class PoseNotYetKnown(PoseError):
+    """The time lies after the newest pose."""
 
 
 class DriverError(TapreachError):

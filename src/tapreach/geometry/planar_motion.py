@@ -52,6 +52,26 @@ class PlanarPose:
         """Return the pose after turning on the spot and then advancing."""
         return self.compose(step.to_pose())
 
+    def towards(self, other: "PlanarPose", fraction: float) -> "PlanarPose":
+        """Return the pose at `fraction` of the way to `other`, at constant twist (the arc between them).
+
+        Turns of pi and more between the two are ambiguous as arcs; there x, y and heading go linearly.
+        """
+        way = self.between(other)
+        half = way.heading / 2.0
+        if abs(half) >= math.pi / 2.0:
+            return self.compose(PlanarPose(fraction * way.x, fraction * way.y, fraction * way.heading))
+        stretch = half / math.tan(half) if half != 0.0 else 1.0
+        forward, sideways = stretch * way.x + half * way.y, stretch * way.y - half * way.x
+        along = PlanarPose().after_arc(fraction, fraction * way.heading)
+        return self.compose(
+            PlanarPose(
+                along.x * forward - along.y * sideways,
+                along.y * forward + along.x * sideways,
+                fraction * way.heading,
+            )
+        )
+
     def to_rigid(self) -> RigidTransform:
         """Return the same pose in space, on the floor z = 0."""
         return RigidTransform.from_components([self.x, self.y, 0.0], Rotation.from_euler("z", self.heading))
