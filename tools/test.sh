@@ -1,5 +1,5 @@
 #!/bin/sh
-# make test: install what the tests need, then run every check in order; the first failure stops.
+# make test: install what the tests need, then run every check in order. Tests run only on code that passed the rest.
 set -eu
 cd "$(dirname "$0")/.."
 . tools/lib/say.sh
@@ -23,22 +23,26 @@ prepare() {
   ensure_node_modules
 }
 
-# check NAME COMMAND...: runs it, says how long it took.
+failed=""
+
+# check NAME COMMAND...: runs it, says how long it took, notes a failure and goes on.
 check() {
   name=$1
   shift
   step "$name"
   started=$(date +%s)
-  "$@" || die "$name failed (its own words are above)." "By itself:  $*"
+  "$@" || failed="$failed
+$name:  $*"
   say "$name: $(($(date +%s) - started)) s"
 }
 
 check_code() {
-  check "ruff format" .venv/bin/ruff format --check --quiet --diff .
+  check "ruff format" .venv/bin/ruff format --check .
   check "ruff check" .venv/bin/ruff check --quiet .
   check "mypy" .venv/bin/mypy
   check "eslint" node_modules/.bin/eslint --max-warnings 0 --no-error-on-unmatched-pattern web
   check "tsc" node_modules/.bin/tsc
+  [ -z "$failed" ] || die "these checks failed (their own words are above); each by itself:$failed"
 }
 
 prepare
