@@ -1,1 +1,1 @@
-"""Row 3: what moves. One module or folder a robot; chosen by name in the registry."""
+"""What moves: one package for each kind of robot."""

@@ -1,1 +1,1 @@
-"""The simulated robot: MuJoCo physics and rendering in a process of its own."""
+"""The simulated robot: MuJoCo physics, a board like the real one, a camera with honest faults."""
