@@ -18,8 +18,9 @@ CLOCK_MODULES = {"time"}
 WALL_CLOCK = {"now", "utcnow", "today"}
 # Randomness is handed in as a seeded generator; these draw from a hidden one.
 HIDDEN_RANDOMNESS = re.compile(
-    r"\brandom\.(random|randint|choice|shuffle|uniform|gauss)\(|"
-    r"\bnp\.random\.(seed|rand|randn|randint|normal|uniform|choice)\("
+    r"^\s*(import random\b|from random import)"
+    r"|\bnp\.random\.(seed|rand|randn|randint|normal|uniform|choice)\(",
+    re.MULTILINE,
 )
 EMPTY_NAMES = {"manager", "helper", "helpers", "utils", "util", "misc", "common"}
 
@@ -169,6 +170,13 @@ def test_machine_words_are_caught(text: str) -> None:
 )
 def test_plain_words_are_not_caught(text: str) -> None:
     assert machine_words(text) == []
+
+
+@pytest.mark.parametrize(
+    "code", ["import random", "    from random import choice", "x = np.random.normal(0, 1)"]
+)
+def test_hidden_randomness_is_caught(code: str) -> None:
+    assert HIDDEN_RANDOMNESS.search(code)
 
 
 def test_print_is_caught() -> None:
