@@ -1,0 +1,92 @@
+"""Turn by an angle, advance by a distance: on odometry, with ramps, to a stop."""
+
+import math
+
+from tapreach.control.motion import Progress, Senses
+from tapreach.control.slide import Slide, SlideProfile
+from tapreach.robot.config import BaseSection
+from tapreach.robot.messages import STILL, Odometry, Twist
+
+GENTLE = 0.5
+"""Share of the base's speed and acceleration that tasks use: gentle driving slips less."""
+STEERING_RATE = 2.0
+"""Turn rate per heading error while advancing [1/s]."""
+
+
+def advance_profile(base: BaseSection) -> SlideProfile:
+    """Return how this base advances."""
+    resolution = 2.0 * math.pi * base.wheel_radius / base.ticks_per_turn
+    return SlideProfile(GENTLE * base.max_linear, GENTLE * base.max_linear_acceleration, resolution)
+
+
+def turn_profile(base: BaseSection) -> SlideProfile:
+    """Return how this base turns on the spot; one tick of both wheels is the least turn."""
+    resolution = 2.0 * advance_profile(base).resolution / base.track_width
+    return SlideProfile(GENTLE * base.max_angular, GENTLE * base.max_angular_acceleration, resolution)
+
+
+class Turn:
+    """Turn on the spot by `angle` [rad, left positive] from where the first odometry finds the base."""
+
+    moves_arm = False
+
+    def __init__(self, angle: float, base: BaseSection) -> None:
+        self._angle = angle
+        self._slide = Slide(angle, turn_profile(base))
+        self._start: Odometry | None = None
+        self._turned = 0.0
+
+    @property
+    def progress(self) -> Progress:
+        """See Motion."""
+        return self._slide.progress
+
+    @property
+    def reason(self) -> str:
+        """See Motion."""
+        if self.progress is not Progress.GIVEN_UP:
+            return ""
+        done, wanted = math.degrees(self._turned), math.degrees(self._angle)
+        return f"the wheels do not turn the base: {done:.1f}° of {wanted:.1f}° done"
+
+    def step(self, senses: Senses, now_ns: int) -> Twist:
+        """See Motion."""
+        if senses.odometry is None:
+            return STILL
+        self._start = self._start or senses.odometry
+        self._turned = senses.odometry.world_from_base.heading - self._start.world_from_base.heading
+        return Twist(0.0, self._slide.step(self._turned, now_ns))
+
+
+class Advance:
+    """Drive straight by `distance` [m, negative is back] along the heading of the first odometry."""
+
+    moves_arm = False
+
+    def __init__(self, distance: float, base: BaseSection) -> None:
+        self._distance = distance
+        self._slide = Slide(distance, advance_profile(base))
+        self._start: Odometry | None = None
+        self._driven = 0.0
+
+    @property
+    def progress(self) -> Progress:
+        """See Motion."""
+        return self._slide.progress
+
+    @property
+    def reason(self) -> str:
+        """See Motion."""
+        if self.progress is not Progress.GIVEN_UP:
+            return ""
+        return f"the wheels do not move the base: {self._driven:.3f} m of {self._distance:.3f} m done"
+
+    def step(self, senses: Senses, now_ns: int) -> Twist:
+        """See Motion."""
+        if senses.odometry is None:
+            return STILL
+        self._start = self._start or senses.odometry
+        way = self._start.world_from_base.between(senses.odometry.world_from_base)
+        self._driven = way.x
+        linear = self._slide.step(way.x, now_ns)
+        return Twist(linear, -STEERING_RATE * way.heading if linear else 0.0)
