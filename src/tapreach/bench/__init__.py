@@ -1,1 +1,1 @@
-"""Row 6: measurements; each prints a table and writes JSON."""
+"""Row 6: measures the whole: video, control. Each bench prints tables and writes JSON."""
