@@ -8,7 +8,8 @@ How a fence is treated, by its language:
   `make ...` is checked to be a target. Nothing else may stand in a console fence.
 - `python`: all fences of one page run one after the other in one fresh process, warnings as errors.
 - `json`, `toml`: must parse.
-- `text`, `mermaid` and fences without a language are not executed. `bash` and `sh` are refused: say `console`.
+- `text`, `mermaid` and fences without a language are not executed; `bash` and `sh` are refused in favour of
+  `console`.
 """
 
 import fnmatch
