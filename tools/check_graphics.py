@@ -1,12 +1,10 @@
-"""Can this machine render off-screen? Exit 0 and name the library, or exit 1 and say what was tried.
+"""Does the system bring a library that renders off-screen? Exit 0 and name it, or exit 1.
 
 Standard library only: runs with the system's Python before anything is installed.
 """
 
 import ctypes
-import importlib.util
 import sys
-from pathlib import Path
 
 EGL_PLATFORM_SURFACELESS_MESA = 0x31DD
 EGL_OPENGL_API = 0x30A2
@@ -37,26 +35,13 @@ def system_osmesa_works() -> bool:
     return False
 
 
-def wheel_osmesa_is_there() -> bool:
-    """True when the lavavu-osmesa wheel is installed; its libraries are loaded by the simulator itself."""
-    spec = importlib.util.find_spec("lavavu")
-    if spec is None or spec.origin is None:
-        return False
-    libraries = Path(spec.origin).parents[1] / "lavavu_osmesa.libs"
-    return any(libraries.glob("libOSMesa*"))
-
-
 def main() -> int:
     """Print the first library that works; 1 when there is none."""
-    for name, works in (
-        ("EGL", egl_works),
-        ("OSMesa", system_osmesa_works),
-        ("OSMesa of lavavu-osmesa", wheel_osmesa_is_there),
-    ):
+    for name, works in (("EGL", egl_works), ("OSMesa", system_osmesa_works)):
         if works():
             print(name)
             return 0
-    print("none of EGL, OSMesa, lavavu-osmesa can be used")
+    print("neither EGL nor OSMesa can be used")
     return 1
 
 

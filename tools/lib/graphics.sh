@@ -3,32 +3,40 @@
 
 wheel_renderer=lavavu-osmesa
 
-can_render_with() { "$1" tools/check_graphics.py >/dev/null 2>&1; }
+graphics_packages="libegl1 libgl1-mesa-dri"
+
+# Before anything is installed: does the system bring a library that renders without a screen?
+system_renders() { "$1" tools/check_graphics.py >/dev/null 2>&1; }
+
+# Afterwards: does the simulated camera itself get a context?
+simulator_renders() { .venv/bin/python -c 'from tapreach.drivers.sim.gl import create_context; create_context().free()'; }
 
 want_graphics_packages() {
   [ -e .venv/.graphics ] && return 0
   probe=.venv/bin/python
   [ -x "$probe" ] || probe=${python:-}
-  [ -n "$probe" ] && can_render_with "$probe" && return 0
-  want_package libegl1 libgl1-mesa-dri
+  [ -n "$probe" ] && system_renders "$probe" && return 0
+  # shellcheck disable=SC2086  # a list of words
+  want_package $graphics_packages
 }
 
 ensure_graphics() {
   [ -e .venv/.graphics ] && return 0
-  if ! can_render_with .venv/bin/python; then install_wheel_renderer; fi
+  simulator_renders 2>/dev/null || install_wheel_renderer
   : >.venv/.graphics
+}
+
+graphics_by_hand() {
+  die "$1" "Install Mesa's EGL, then run the same command again:" \
+    "  $(missing_packages=" $graphics_packages" by_hand_line)"
 }
 
 # Only Mesa is used out of this wheel, hence --no-deps: its dependencies are a whole plotting stack.
 install_wheel_renderer() {
-  wheel_fits ||
-    die "no off-screen renderer for the simulated camera." "Install Mesa's EGL, then run the same command again:" \
-      "  $(missing_packages=' libegl1 libgl1-mesa-dri' by_hand_line)"
-  say "Mesa's EGL is not installed, so the renderer comes from PyPI instead ($wheel_renderer, 84 MB)."
+  wheel_fits || graphics_by_hand "no off-screen renderer for the simulated camera."
+  step "Mesa's EGL is not installed; taking the renderer of $wheel_renderer from PyPI instead (84 MB)"
   pip_install --no-deps "$wheel_renderer"
-  can_render_with .venv/bin/python ||
-    die "$wheel_renderer is installed but does not render here." "Install Mesa's EGL instead:" \
-      "  $(missing_packages=' libegl1 libgl1-mesa-dri' by_hand_line)"
+  simulator_renders || graphics_by_hand "$wheel_renderer is installed but does not render here."
 }
 
 # The wheel exists for 64-bit Intel and Python up to 3.13.

@@ -5,10 +5,11 @@ missing_packages=""
 
 want_package() { missing_packages="$missing_packages $*"; }
 
-apt_line() { printf 'apt-get update && %sapt-get install -y --no-install-recommends%s' "${1:-}" "$missing_packages"; }
+apt_line() { printf '%sapt-get update && %sapt-get install -y --no-install-recommends%s' "$1" "$1" "$missing_packages"; }
 
+# The line that a person types to do it by hand.
 by_hand_line() {
-  if [ "$(id -u)" = 0 ]; then apt_line; else printf 'sudo %s' "$(apt_line 'sudo ')"; fi
+  if [ "$(id -u)" = 0 ]; then apt_line ""; elif has sudo; then apt_line "sudo "; else printf "su -c '%s'" "$(apt_line "")"; fi
 }
 
 # Returns 0 when everything collected is installed; 1 when it may not or cannot be.
