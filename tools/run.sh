@@ -9,11 +9,9 @@ cd "$(dirname "$0")/.."
 
 prepare() {
   want_python_packages
-  needed=$missing_packages
-  want_graphics_packages
-  if ! install_packages && [ -n "$needed" ]; then
-    die "system packages are missing." "Install them, then run the same command again:" "  $(by_hand_line)"
-  fi
+  required=$missing_packages
+  want_graphics_packages # wanted, not required: a wheel can take their place
+  install_packages || [ -z "$required" ] || explain_missing_packages
   ensure_venv
   ensure_package ""
   ensure_graphics

@@ -11,11 +11,11 @@ cd "$(dirname "$0")/.."
 
 prepare() {
   want_python_packages
-  want_graphics_packages
   want_browser_package
   want_node_packages
-  install_packages ||
-    die "system packages are missing." "Install them, then run the same command again:" "  $(by_hand_line)"
+  required=$missing_packages
+  want_graphics_packages
+  install_packages || [ -z "$required" ] || explain_missing_packages
   ensure_venv
   ensure_package "[dev]"
   ensure_graphics

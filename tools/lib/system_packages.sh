@@ -12,6 +12,10 @@ by_hand_line() {
   if [ "$(id -u)" = 0 ]; then apt_line ""; elif has sudo; then apt_line "sudo "; else printf "su -c '%s'" "$(apt_line "")"; fi
 }
 
+explain_missing_packages() {
+  die "system packages are missing." "Install them, then run the same command again:" "  $(by_hand_line)"
+}
+
 # Returns 0 when everything collected is installed; 1 when it may not or cannot be.
 install_packages() {
   [ -n "$missing_packages" ] || return 0
