@@ -10,9 +10,13 @@ from PIL import Image, ImageDraw, ImageFont
 Colour = tuple[int, int, int]
 
 
-def _write(draw: ImageDraw.ImageDraw, centre: tuple[float, float], text: str, size: int, ink: Colour, rim: Colour) -> None:
+def _write(
+    draw: ImageDraw.ImageDraw, centre: tuple[float, float], text: str, size: int, ink: Colour, rim: Colour
+) -> None:
     font = ImageFont.load_default(size=size)
-    draw.text(centre, text, fill=ink, font=font, stroke_width=max(1, size // 16), stroke_fill=rim, anchor="mm")
+    draw.text(
+        centre, text, fill=ink, font=font, stroke_width=max(1, size // 16), stroke_fill=rim, anchor="mm"
+    )
 
 
 def _worn(sheet: Image.Image, seed: int, depth: float = 0.05) -> Pixels:
@@ -33,7 +37,11 @@ def can_label(text: str, ground: Colour, band: Colour, seed: int) -> Pixels:
         _write(draw, (centre, 104), text, 74, (252, 250, 244), (40, 12, 12))
         draw.ellipse([centre - 34, 36, centre + 34, 48], fill=band)
     for bar in range(12):
-        draw.line([238 + bar * 3, 66, 238 + bar * 3, 116], fill=(20, 20, 20) if bar % 3 else (245, 245, 245), width=2)
+        draw.line(
+            [238 + bar * 3, 66, 238 + bar * 3, 116],
+            fill=(20, 20, 20) if bar % 3 else (245, 245, 245),
+            width=2,
+        )
     draw.rectangle([0, 0, wide, 17], fill=(198, 200, 204))
     draw.rectangle([0, high - 14, wide, high], fill=(188, 190, 194))
     return _worn(sheet, seed)

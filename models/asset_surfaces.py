@@ -145,7 +145,9 @@ def brick() -> Pixels:
         for column in range(across):
             left = int((column + 0.5 * (row % 2)) * brick_wide)
             columns = np.arange(left + 3, left + int(brick_wide)) % wide
-            picture[row * course + 3 : (row + 1) * course, columns] = np.array([158, 84, 62]) * rng.uniform(0.72, 1.15)
+            picture[row * course + 3 : (row + 1) * course, columns] = np.array([158, 84, 62]) * rng.uniform(
+                0.72, 1.15
+            )
     return picture * (1 + 0.09 * noise(high, wide, 102, 8, 6))[..., None]
 
 
@@ -164,7 +166,12 @@ def rug() -> Pixels:
     rng = np.random.default_rng(121)
     sheet = Image.new("RGB", (wide, high), (128, 34, 38))
     draw = ImageDraw.Draw(sheet)
-    for inset, colour in ((10, (222, 200, 160)), (20, (34, 46, 82)), (62, (222, 200, 160)), (70, (142, 42, 40))):
+    for inset, colour in (
+        (10, (222, 200, 160)),
+        (20, (34, 46, 82)),
+        (62, (222, 200, 160)),
+        (70, (142, 42, 40)),
+    ):
         draw.rectangle([inset, inset, wide - 1 - inset, high - 1 - inset], fill=colour)
     for x in range(36, wide - 20, 30):
         for y in (41, high - 41):
@@ -187,7 +194,15 @@ def books() -> Pixels:
     rng = np.random.default_rng(131)
     sheet = Image.new("RGB", (wide, high), (44, 34, 26))
     draw = ImageDraw.Draw(sheet)
-    palette = [(148, 38, 42), (32, 66, 110), (212, 190, 142), (42, 92, 66), (216, 140, 42), (78, 52, 96), (226, 224, 214)]
+    palette = [
+        (148, 38, 42),
+        (32, 66, 110),
+        (212, 190, 142),
+        (42, 92, 66),
+        (216, 140, 42),
+        (78, 52, 96),
+        (226, 224, 214),
+    ]
     x = 2
     while x < wide - 10:
         thick, tall = int(rng.integers(16, 40)), int(rng.integers(270, 372))
@@ -196,7 +211,11 @@ def books() -> Pixels:
         band = high - tall + int(rng.integers(14, 50))
         draw.rectangle([x + 3, band, x + thick - 3, band + 9], fill=(236, 220, 170))
         for y in range(band + 24, high - 40, 9):
-            draw.line([x + thick // 2, y, x + thick // 2, y + int(rng.integers(3, 8))], fill=(240, 232, 214), width=3)
+            draw.line(
+                [x + thick // 2, y, x + thick // 2, y + int(rng.integers(3, 8))],
+                fill=(240, 232, 214),
+                width=3,
+            )
         x += thick + 1
     return np.asarray(sheet, dtype=float)
 
@@ -226,7 +245,9 @@ def poster_mountain() -> Pixels:
     draw = ImageDraw.Draw(sheet)
     draw.rectangle([16, 16, 239, 280], fill=(242, 176, 92))
     draw.ellipse([150, 46, 210, 106], fill=(252, 234, 160))
-    draw.polygon([(16, 250), (90, 96), (150, 210), (180, 160), (239, 262), (239, 280), (16, 280)], fill=(54, 74, 112))
+    draw.polygon(
+        [(16, 250), (90, 96), (150, 210), (180, 160), (239, 262), (239, 280), (16, 280)], fill=(54, 74, 112)
+    )
     draw.polygon([(72, 134), (90, 96), (108, 132), (94, 144), (84, 130)], fill=(246, 246, 250))
     draw.polygon([(16, 280), (16, 240), (110, 262), (239, 236), (239, 280)], fill=(40, 90, 72))
     draw.rectangle([48, 300, 207, 312], fill=(54, 74, 112))
@@ -249,7 +270,12 @@ def door() -> Pixels:
     """A panelled door, painted."""
     sheet = Image.new("RGB", (256, 512), (226, 220, 206))
     draw = ImageDraw.Draw(sheet)
-    for left, top, right, bottom in ((36, 40, 112, 210), (144, 40, 220, 210), (36, 250, 112, 470), (144, 250, 220, 470)):
+    for left, top, right, bottom in (
+        (36, 40, 112, 210),
+        (144, 40, 220, 210),
+        (36, 250, 112, 470),
+        (144, 250, 220, 470),
+    ):
         draw.rectangle([left, top, right, bottom], fill=(212, 205, 190), outline=(166, 158, 142), width=4)
         draw.line([left, top, right, top], fill=(140, 132, 118), width=4)
     draw.ellipse([12, 236, 30, 254], fill=(150, 130, 80))

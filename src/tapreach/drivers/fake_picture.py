@@ -68,19 +68,24 @@ class FakePicture:
         self._grid_in_world = floor_grid()
         self._faces_in_world = np.concatenate([box.faces_in_world() for box in boxes])
         self._colours = [box.colour for box in boxes for _ in range(5)]
-        self._horizon = self._row_of_horizon()
+        self._background = self._sky_and_floor()
 
     def jpeg(self, world_from_base: PlanarPose, label: str) -> bytes:
         """Return the picture from `world_from_base` with `label` in its corner, as JPEG."""
-        size = self._camera.size
-        picture = np.full((size.height, size.width, 3), SKY, np.uint8)
-        picture[self._horizon :] = FLOOR
+        picture = self._background.copy()
         camera_from_world = self._camera_from_base * world_from_base.to_rigid().inv()
         self._draw_grid(picture, camera_from_world.apply(self._grid_in_world.reshape(-1, 3)))
         self._draw_boxes(picture, camera_from_world.apply(self._faces_in_world.reshape(-1, 3)))
         cv2.putText(picture, label, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (40, 40, 40), 1)
         _, encoded = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
         return encoded.tobytes()
+
+    def _sky_and_floor(self) -> Picture:
+        size = self._camera.size
+        picture = np.empty((size.height, size.width, 3), np.uint8)
+        picture[:] = SKY
+        picture[self._row_of_horizon() :] = FLOOR
+        return picture
 
     def _row_of_horizon(self) -> int:
         # The horizon is where level directions straight ahead fall; the camera does not roll in flight.

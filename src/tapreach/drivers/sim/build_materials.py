@@ -50,7 +50,12 @@ class Palette:
         name = f"{texture_name}_{repeat[0]:g}_{repeat[1]:g}_{per_metre}_{emission:g}"
         if self.spec.material(name) is None:
             material = self.spec.add_material(
-                name=name, texrepeat=repeat, texuniform=per_metre, specular=0.08, shininess=0.3, emission=emission
+                name=name,
+                texrepeat=repeat,
+                texuniform=per_metre,
+                specular=0.08,
+                shininess=0.3,
+                emission=emission,
             )
             material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = texture_name
         return name

@@ -91,10 +91,23 @@ def add_hanging(spec: mujoco.MjSpec, palette: Palette, room: Room, index: int, h
     paint = palette.flat("#f2efe8" if rail > 0.03 else "#2e2a26")
     sides = [-hanging.width / 2, hanging.width / 2]
     for number, offset in enumerate([*sides, 0.0] if hanging.kind == "window" else sides):
-        _add_slab(spec, wall, f"{name}_post_{number}", rail, hanging.height, along + offset, hanging.up, 0.015, 0.034, paint)
+        _add_slab(
+            spec,
+            wall,
+            f"{name}_post_{number}",
+            rail,
+            hanging.height,
+            along + offset,
+            hanging.up,
+            0.015,
+            0.034,
+            paint,
+        )
     for number, share in enumerate((0.0, 0.5, 1.0) if hanging.kind == "window" else (0.0, 1.0)):
         up = hanging.up + share * hanging.height - rail / 2
-        _add_slab(spec, wall, f"{name}_rail_{number}", hanging.width + rail, rail, along, up, 0.016, 0.034, paint)
+        _add_slab(
+            spec, wall, f"{name}_rail_{number}", hanging.width + rail, rail, along, up, 0.016, 0.034, paint
+        )
 
 
 def _add_slab(
@@ -112,7 +125,9 @@ def add_furniture(spec: mujoco.MjSpec, palette: Palette, index: int, piece: Furn
     """Add one piece as a body that does not move."""
     yaw = math.radians(piece.yaw_deg)
     body = spec.worldbody.add_body(
-        name=f"{piece.kind}_{index}", pos=(*piece.position, 0), quat=(math.cos(yaw / 2), 0, 0, math.sin(yaw / 2))
+        name=f"{piece.kind}_{index}",
+        pos=(*piece.position, 0),
+        quat=(math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)),
     )
     shapes = {"box": GEOM.mjGEOM_BOX, "cylinder": GEOM.mjGEOM_CYLINDER, "ellipsoid": GEOM.mjGEOM_ELLIPSOID}
     for part in piece.parts():
@@ -136,7 +151,11 @@ def add_light(spec: mujoco.MjSpec, light: Light, is_outside: bool) -> None:
     """Add the sun (or lamp), the light from all around and the sky."""
     azimuth, elevation = math.radians(light.azimuth_deg), math.radians(light.elevation_deg)
     towards = np.array(
-        [math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation)]
+        [
+            math.cos(elevation) * math.cos(azimuth),
+            math.cos(elevation) * math.sin(azimuth),
+            math.sin(elevation),
+        ]
     )
     tint = np.array([1.0 + 0.12 * light.warmth, 1.0, 1.0 - 0.22 * light.warmth])
     spec.worldbody.add_light(
@@ -149,7 +168,9 @@ def add_light(spec: mujoco.MjSpec, light: Light, is_outside: bool) -> None:
     head.diffuse = np.full(3, 0.3 * light.ambient)
     head.specular = np.zeros(3)
     shine = min(1.0, 0.25 + light.ambient + 0.4 * light.sun)
-    above, below = ((0.30, 0.50, 0.82), (0.80, 0.87, 0.93)) if is_outside else ((0.88, 0.87, 0.84), (0.8, 0.79, 0.76))
+    above, below = (
+        ((0.30, 0.50, 0.82), (0.80, 0.87, 0.93)) if is_outside else ((0.88, 0.87, 0.84), (0.8, 0.79, 0.76))
+    )
     spec.add_texture(
         name="sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=mujoco.mjtBuiltin.mjBUILTIN_GRADIENT,
         rgb1=np.array(above) * shine, rgb2=np.array(below) * shine, width=64, height=384,

@@ -13,7 +13,9 @@ class Encoders:
     def __init__(self, ticks_per_turn: float, wheel_radius: float, faults: SimFaults, seed: int) -> None:
         self._ticks_per_turn = faults.encoder_ticks_per_turn or ticks_per_turn
         self._radius = wheel_radius
-        self._gain = np.array([1.0 + faults.wheel_left_error, 1.0 + faults.wheel_right_error]) / (1 - faults.slip)
+        self._gain = np.array([1.0 + faults.wheel_left_error, 1.0 + faults.wheel_right_error]) / (
+            1 - faults.slip
+        )
         self._noise = faults.slip_noise
         self._rng = np.random.default_rng([seed, 1])
         self._true_angle = np.zeros(2)

@@ -20,27 +20,34 @@ class SimFaults(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     wheel_left_error: Fraction = Field(
-        0.0, description="the left encoder counts this fraction too much: as a wheel smaller than its file says"
+        0.0,
+        description="the left encoder counts this fraction too much: as a wheel smaller than its file says",
     )
     wheel_right_error: Fraction = Field(0.0, description="the same for the right wheel")
     track_error: Fraction = Field(0.0, description="the wheels stand this fraction wider than the file says")
     slip: Share = Field(0.0, description="fraction of each wheel's turning that does not move the robot")
     slip_noise: Share = Field(
-        0.0, description="random slip of each wheel on its own: one sigma after 1 m of rolling, fraction [1/√m]"
+        0.0,
+        description="random slip of each wheel on its own: one sigma after 1 m of rolling, fraction [1/√m]",
     )
     encoder_ticks_per_turn: int | None = Field(
         None, ge=4, le=100_000, description="ticks of one wheel turn; as in the robot file when left out"
     )
-    camera_delay_ms: Amount = Field(0.0, description="further delay of each picture, unknown to the host [ms]")
+    camera_delay_ms: Amount = Field(
+        0.0, description="further delay of each picture, unknown to the host [ms]"
+    )
     dropped_frames: Share = Field(0.0, description="probability that a picture is lost")
     jpeg_quality: int = Field(80, ge=1, le=100, description="quality of the camera's JPEG")
     exposure_noise: Share = Field(
-        0.0, description="one sigma of the brightness from picture to picture (fraction) and of pixel noise (/10)"
+        0.0,
+        description="one sigma of the brightness from picture to picture (fraction) and of pixel noise (/10)",
     )
     motion_blur_ms: Annotated[float, Field(ge=0.0, le=100.0, allow_inf_nan=False)] = Field(
         0.0, description="exposure time; what moves meanwhile is blurred [ms]"
     )
-    focal_error: Fraction = Field(0.0, description="the true focal length is this fraction longer than in the file")
+    focal_error: Fraction = Field(
+        0.0, description="the true focal length is this fraction longer than in the file"
+    )
     mount_forward: Metres = Field(0.0, description="the camera truly sits this much further ahead [m]")
     mount_left: Metres = Field(0.0, description="... further left [m]")
     mount_up: Metres = Field(0.0, description="... higher [m]")

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.scene_checks import check_places
 from tapreach.drivers.sim.scene_furniture import Furniture, Hanging
-from tapreach.drivers.sim.scene_objects import AnyObject, Angle, Entry, Length
+from tapreach.drivers.sim.scene_objects import Angle, AnyObject, Entry, Length
 from tapreach.errors import ConfigError
 from tapreach.resources import resource_path
 from tapreach.robot.toml_file import PlacedValueError, load_validated
@@ -76,7 +76,9 @@ def load_scene(name_or_path: str) -> Scene:
         return load_validated(Path(name_or_path), Scene)
     path = resource_path("scenes") / f"{name_or_path}.toml"
     if not path.is_file():
-        raise ConfigError(f"no scene {name_or_path!r}; scenes: {', '.join(scene_names())}; or give a .toml file")
+        raise ConfigError(
+            f"no scene {name_or_path!r}; scenes: {', '.join(scene_names())}; or give a .toml file"
+        )
     return load_validated(path, Scene)
 
 

@@ -25,15 +25,11 @@ class Solid:
     def overlaps(self, other: "Solid") -> bool:
         """True when the two share more than touching surfaces (1 mm is forgiven)."""
         slack = 1e-3
-        apart_in_height = (
-            self.height[1] - other.height[0] < slack or other.height[1] - self.height[0] < slack
-        )
+        apart_in_height = self.height[1] - other.height[0] < slack or other.height[1] - self.height[0] < slack
         return not apart_in_height and not _is_separable(self.outline, other.outline, slack)
 
 
-ROBOT_AT_START = Solid(
-    np.array([[-0.17, -0.11], [0.21, -0.11], [0.21, 0.11], [-0.17, 0.11]]), (0.0, 0.40)
-)
+ROBOT_AT_START = Solid(np.array([[-0.17, -0.11], [0.21, -0.11], [0.21, 0.11], [-0.17, 0.11]]), (0.0, 0.40))
 
 
 def check_places(
@@ -114,7 +110,9 @@ def _check_inside(
     for axis, (name, (low, high)) in enumerate((("x", room_x), ("y", room_y))):
         least, most = solid.outline[:, axis].min(), solid.outline[:, axis].max()
         if least < low - 1e-6 or most > high + 1e-6:
-            message = f"{what} is outside of the room: {name} {least:.2f} to {most:.2f} m, room {low:g} to {high:g}"
+            message = (
+                f"{what} is outside of the room: {name} {least:.2f} to {most:.2f} m, room {low:g} to {high:g}"
+            )
             raise PlacedValueError(message, table, index, "position")
 
 

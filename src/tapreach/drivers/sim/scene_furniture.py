@@ -29,7 +29,9 @@ class Part:
 class Furniture(Entry):
     """A piece that stands on the floor and does not move."""
 
-    kind: Literal["table", "chair", "shelf", "sofa", "plant", "rug", "bench", "tree", "planter", "lamp", "path"]
+    kind: Literal[
+        "table", "chair", "shelf", "sofa", "plant", "rug", "bench", "tree", "planter", "lamp", "path"
+    ]
     position: tuple[Place, Place]
     yaw_deg: Angle = 0.0
     size: tuple[Length, Length, Length] | None = Field(
@@ -49,7 +51,9 @@ class Hanging(Entry):
     wall: Literal["north", "south", "west", "east"] = Field(
         description="north: at the far end of x; west: at the far end of y; seen from the middle of the room"
     )
-    along: Place = Field(description="place of its middle along the wall: y (north, south) or x (west, east) [m]")
+    along: Place = Field(
+        description="place of its middle along the wall: y (north, south) or x (west, east) [m]"
+    )
     up: Annotated[float, Field(ge=0.0, le=3.0)] = Field(0.0, description="lower edge above the floor [m]")
     width: Length = 0.9
     height: Length = 2.0
@@ -94,7 +98,9 @@ def _shelf(deep: float, wide: float, tall: float) -> Iterator[Part]:
         if index < boards:
             high = 0.74 * (tall - 0.07) / boards
             side = 1 if index % 2 else -1
-            yield box((0.6 * deep, 0.62 * wide, high), (-0.1 * deep, side * 0.15 * wide, z + high / 2), "books")
+            yield box(
+                (0.6 * deep, 0.62 * wide, high), (-0.1 * deep, side * 0.15 * wide, z + high / 2), "books"
+            )
 
 
 def _sofa(deep: float, wide: float, tall: float) -> Iterator[Part]:
@@ -113,7 +119,12 @@ def _plant(deep: float, wide: float, tall: float) -> Iterator[Part]:
     yield Part("cylinder", (0.62 * radius, pot / 2, 0), (0, 0, pot / 2), "#b4643f")
     yield Part("cylinder", (0.70 * radius, 0.014, 0), (0, 0, pot - 0.014), "#c2714a")
     yield Part("cylinder", (0.03, 0.12 * tall, 0), (0, 0, pot + 0.1 * tall), "bark", is_solid=False)
-    for dx, dy, z, size in ((0.25, 0.1, 0.62, 0.62), (-0.3, 0.2, 0.66, 0.6), (0.0, -0.3, 0.64, 0.6), (0, 0, 0.82, 0.7)):
+    for dx, dy, z, size in (
+        (0.25, 0.1, 0.62, 0.62),
+        (-0.3, 0.2, 0.66, 0.6),
+        (0.0, -0.3, 0.64, 0.6),
+        (0, 0, 0.82, 0.7),
+    ):
         half = (size * radius, size * radius, 0.17 * tall)
         yield Part("ellipsoid", half, (dx * radius, dy * radius, z * tall), "leaves", is_solid=False)
 
@@ -136,7 +147,12 @@ def _bench(deep: float, wide: float, tall: float) -> Iterator[Part]:
 
 def _tree(deep: float, wide: float, tall: float) -> Iterator[Part]:
     yield Part("cylinder", (0.09, 0.3 * tall, 0), (0, 0, 0.3 * tall), "bark")
-    for dx, dy, z, size in ((0.2, 0, 0.66, 0.8), (-0.2, 0.3, 0.72, 0.8), (-0.1, -0.3, 0.7, 0.8), (0, 0, 0.86, 0.7)):
+    for dx, dy, z, size in (
+        (0.2, 0, 0.66, 0.8),
+        (-0.2, 0.3, 0.72, 0.8),
+        (-0.1, -0.3, 0.7, 0.8),
+        (0, 0, 0.86, 0.7),
+    ):
         half = (size * deep / 2, size * wide / 2, 0.18 * tall)
         yield Part("ellipsoid", half, (dx * deep, dy * wide, z * tall), "leaves", is_solid=False)
 

@@ -110,7 +110,9 @@ class World:
         level = -(self._servos[1].position + self._servos[2].position)
         self.data.qpos[self.model.joint("wrist").qposadr[0]] = level
         for finger in ("finger_left", "finger_right"):
-            self.data.qpos[self.model.joint(finger).qposadr[0]] = self._servos[3].position / CLAW_RAD_PER_METRE / 2
+            self.data.qpos[self.model.joint(finger).qposadr[0]] = (
+                self._servos[3].position / CLAW_RAD_PER_METRE / 2
+            )
         mujoco.mj_forward(self.model, self.data)
         for _ in range(round(SETTLE_S / CONTROL_PERIOD_S)):
             self.step()

@@ -1,0 +1,128 @@
+"""Where things truly are. For tests and benches only: nothing that locates or drives may import this."""
+
+import json
+from dataclasses import asdict, dataclass
+from typing import Protocol
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from tapreach.drivers.sim.build import OPENCV_FROM_MUJOCO
+from tapreach.drivers.sim.scene import Scene
+from tapreach.drivers.sim.scene_objects import Box
+from tapreach.geometry.planar_motion import PlanarPose
+
+Matrix = tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class ObjectTruth:
+    """One object: its middle in the world frame [m], its pose (4 × 4), outer size along its axes [m]."""
+
+    name: str
+    kind: str
+    centre_in_world: tuple[float, float, float]
+    world_from_object: Matrix
+    size: tuple[float, float, float]
+    graspable: bool
+
+
+@dataclass(frozen=True)
+class WorldTruth:
+    """Everything at one time. Poses are 4 × 4 matrices in the world frame (the base at start-up)."""
+
+    captured_ns: int
+    world_from_base: Matrix
+    world_from_camera: Matrix
+    world_from_gripper: Matrix
+    focal_px: float
+    objects: tuple[ObjectTruth, ...]
+
+    @property
+    def base_pose(self) -> PlanarPose:
+        """The base on the floor."""
+        return PlanarPose.from_rigid(RigidTransform.from_matrix(np.array(self.world_from_base)))
+
+    @property
+    def camera_pose(self) -> RigidTransform:
+        """world_from_camera."""
+        return RigidTransform.from_matrix(np.array(self.world_from_camera))
+
+    def object(self, name: str) -> ObjectTruth:
+        """Return the object called `name`. Raises KeyError listing the names."""
+        for thing in self.objects:
+            if thing.name == name:
+                return thing
+        raise KeyError(f"no object {name!r}; objects: {', '.join(o.name for o in self.objects)}")
+
+    def to_json(self) -> str:
+        """Return JSON that `from_json` reads."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_json(cls, text: str) -> "WorldTruth":
+        """Read what `to_json` wrote."""
+        data = json.loads(text)
+        objects = tuple(
+            ObjectTruth(**{**o, "centre_in_world": tuple(o["centre_in_world"]), "size": tuple(o["size"])})
+            for o in data.pop("objects")
+        )
+        return cls(objects=objects, **data)
+
+
+class AsksTruth(Protocol):
+    """A SimRobot made with tells_truth=True, or an InlineSimRobot."""
+
+    async def ask_truth_json(self, at_ns: int) -> str:
+        """Return WorldTruth as JSON; for `ask_truth` only."""
+        ...
+
+
+async def ask_truth(robot: AsksTruth, at_ns: int = 0) -> WorldTruth:
+    """Return the truth at a time of the last 10 s [ns], interpolated; now for 0.
+
+    Raises InputError for a SimRobot that was not made with tells_truth=True, LinkLost when it is gone.
+    """
+    return WorldTruth.from_json(await robot.ask_truth_json(at_ns))
+
+
+class TruthTeller:
+    """Reads the truth out of states of a model; works on data of its own, so physics is not disturbed."""
+
+    def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
+        self._model = model
+        self._data = mujoco.MjData(model)
+        self._things = list(zip(scene.object_names(), scene.objects, strict=True))
+
+    def tell(self, qpos: NDArray[np.float64], captured_ns: int) -> WorldTruth:
+        """Return the truth of one state."""
+        self._data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_camlight(self._model, self._data)
+        base, camera = self._data.body("base"), self._data.camera("front")
+        gripper = self._data.site("gripper")
+        lens = camera.id
+        focal = self._model.cam_resolution[lens][1] / 2 / np.tan(np.radians(self._model.cam_fovy[lens]) / 2)
+        return WorldTruth(
+            captured_ns,
+            _matrix(base.xpos, base.xmat.reshape(3, 3)),
+            _matrix(camera.xpos, camera.xmat.reshape(3, 3) @ OPENCV_FROM_MUJOCO),
+            _matrix(gripper.xpos, gripper.xmat.reshape(3, 3)),
+            float(focal),
+            tuple(self._object(index) for index in range(len(self._things))),
+        )
+
+    def _object(self, index: int) -> ObjectTruth:
+        name, thing = self._things[index]
+        body = self._data.body(name)
+        size = thing.size if isinstance(thing, Box) else (thing.width, thing.width, thing.tall)
+        centre = (float(body.xpos[0]), float(body.xpos[1]), float(body.xpos[2]))
+        pose = _matrix(body.xpos, body.xmat.reshape(3, 3))
+        return ObjectTruth(name, thing.kind, centre, pose, size, thing.graspable)
+
+
+def _matrix(position: NDArray[np.float64], rotation: NDArray[np.float64]) -> Matrix:
+    pose = RigidTransform.from_components(position, Rotation.from_matrix(rotation))
+    return tuple(tuple(float(value) for value in row) for row in pose.as_matrix())
