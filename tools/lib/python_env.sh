@@ -67,7 +67,7 @@ ensure_package() {
 pip_install() {
   quiet=--quiet
   is_interactive && quiet=--progress-bar=on
-  .venv/bin/python -m pip install --disable-pip-version-check "$quiet" "$@" || explain_pip_failure
+  .venv/bin/python -m pip install --disable-pip-version-check --retries 2 "$quiet" "$@" || explain_pip_failure
 }
 
 explain_pip_failure() {
