@@ -1,0 +1,46 @@
+/** The running task: phase, progress, and a Cancel that ends it at once. */
+import { byId, setText } from "./dom.js";
+
+/** @typedef {import("../net/messages.js").TaskView} TaskView */
+
+export class TaskPanel {
+  /**
+   * @param {import("../net/control_socket.js").ControlSocket} socket
+   * @param {import("./toast.js").Toast} toast
+   */
+  constructor(socket, toast) {
+    this.toast = toast;
+    /** @type {TaskView | null} */
+    this.task = null;
+    byId("task-cancel").addEventListener("click", () => void socket.send({ type: "task_cancel" }));
+  }
+
+  /** @param {TaskView} task */
+  show(task) {
+    const wasRunning = this.task?.task_id === task.task_id && this.task.state === "running";
+    this.task = task;
+    byId("task").hidden = task.state !== "running";
+    setText(byId("task-phase"), sentence(task.phase || task.kind));
+    setText(byId("task-message"), task.message);
+    byId("task-progress").setAttribute("value", String(task.progress));
+    if (wasRunning && task.state !== "running") this.tellEnd(task);
+  }
+
+  /** A lost connection ends what the page knows of a task. */
+  clear() {
+    this.task = null;
+    byId("task").hidden = true;
+  }
+
+  /** @param {TaskView} task */
+  tellEnd(task) {
+    if (task.state === "cancelled") this.toast.tell(task.message || "Cancelled. The robot stands still.");
+    if (task.state === "failed") this.toast.tell(task.message || "This did not work.", "bad");
+  }
+}
+
+/** @param {string} phase such as "turning_left" */
+function sentence(phase) {
+  const words = phase.replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
