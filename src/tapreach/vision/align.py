@@ -1,8 +1,8 @@
 """Where a patch lies in another picture, to a fraction of a pixel, and how sure that is.
 
-Inverse compositional Gauss-Newton over an affine warp, gain and offset of brightness, with Tukey weights against
-occlusion and background, and a prior that keeps the linear part near its start where texture is weak.
-Source: Baker and Matthews, "Lucas-Kanade 20 years on", IJCV 2004, parts 1 (section 3.2) and 3.
+Inverse compositional Gauss-Newton over an affine warp, gain and offset of brightness, with Tukey weights
+against occlusion and background, and a prior that keeps the linear part near its start where texture is
+weak. Source: Baker and Matthews, "Lucas-Kanade 20 years on", IJCV 2004, parts 1 (section 3.2) and 3.
 """
 
 from dataclasses import dataclass
@@ -159,4 +159,6 @@ def _is_plausible(warp: Warp, start: Warp, reach: int) -> bool:
     moved = float(np.hypot(*(warp[:, 2] - start[:, 2]))) / scale_of(start)
     singular = np.linalg.svd(warp[:, :2], compute_uv=False)
     is_upright = float(np.linalg.det(warp[:, :2])) > 0.0
-    return is_upright and 0.6 < change < 1.7 and moved < reach and float(singular[0]) < 3.0 * float(singular[1])
+    return (
+        is_upright and 0.6 < change < 1.7 and moved < reach and float(singular[0]) < 3.0 * float(singular[1])
+    )

@@ -1,4 +1,5 @@
-"""How the surroundings of a place moved from one picture to the next: corners, KLT forth and back, a similarity.
+"""How the surroundings of a place moved from one picture to the next: corners, KLT forth and back, a
+similarity.
 
 Source: Shi and Tomasi 1994; Kalal, Mikolajczyk and Matas, "Forward-backward error", ICPR 2010.
 """
@@ -44,7 +45,7 @@ def corners_near(picture: Gray, u: float, v: float, radius: float) -> Points:
     found = cv2.goodFeaturesToTrack(picture[top:bottom, left:right], _CORNERS, 0.01, 3, mask=mask)
     if found is None:
         return np.zeros((0, 2), np.float32)
-    return np.asarray(found.reshape(-1, 2) + (left, top), dtype=np.float32)
+    return np.asarray(found.reshape(-1, 2) + np.array([left, top]), dtype=np.float32)
 
 
 def flow_between(before: Gray, now: Gray, points: Points, shift: tuple[float, float]) -> Motion | None:
@@ -55,7 +56,7 @@ def flow_between(before: Gray, now: Gray, points: Points, shift: tuple[float, fl
     if len(points) < _LEAST_AGREEING:
         return None
     start = points.reshape(-1, 1, 2)
-    forth = _follow(before, now, start, start + np.float32(shift))
+    forth = _follow(before, now, start, start + np.array(shift, dtype=np.float32))
     back = _follow(now, before, forth[0], start.copy())
     gap = np.linalg.norm(back[0] - start, axis=2).ravel()
     is_kept = forth[1] & back[1] & (gap < _FORTH_AND_BACK)

@@ -23,7 +23,8 @@ class BrokenPicture:
 def decode_gray(jpeg: bytes) -> Gray | BrokenPicture:
     """Return the grey picture of a JPEG, or BrokenPicture for bytes that are not one, or not all of one.
 
-    A JPEG that was cut short is refused: decoders fill the missing part with grey, which a tracker would follow.
+    A JPEG that was cut short is refused: decoders fill the missing part with grey, which a tracker would
+    follow.
     """
     if not jpeg.startswith(_START):
         return BrokenPicture(f"{len(jpeg)} bytes that do not begin like a JPEG")

@@ -24,10 +24,14 @@ def find_again(
 ) -> Warp | None:
     """Return a warp from `patch` to where it most likely is, None when there is no clear peak.
 
-    last: the warp when it was last seen. lost_for: pictures since then; the search grows with it. A second place that
-    looks nearly as good, away from the best one, makes the answer None: two alike are no answer.
+    last: the warp when it was last seen. lost_for: pictures since then; the search grows with it. A second
+    place that looks nearly as good, away from the best one, makes the answer None: two alike are no answer.
     """
-    peaks = [peak for start, reach in _places(last, guesses, lost_for) for peak in _peaks(patch, picture, start, reach)]
+    peaks = [
+        peak
+        for start, reach in _places(last, guesses, lost_for)
+        for peak in _peaks(patch, picture, start, reach)
+    ]
     if not peaks:
         return None
     best_score, best = max(peaks, key=lambda peak: peak[0])

@@ -18,8 +18,8 @@ class TrackStatus(StrEnum):
 class Guess:
     """Where the place may be in the next picture [px], and how much larger than in the tapped frame.
 
-    The caller knows the robot's motion and makes guesses from it: one for each supposed distance lays them along the
-    epipolar line.
+    The caller knows the robot's motion and makes guesses from it: one for each supposed distance lays them
+    along the epipolar line.
     """
 
     u: float

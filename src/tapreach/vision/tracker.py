@@ -1,9 +1,9 @@
 """Follows a tapped place through pictures, and says when it cannot.
 
-From picture to picture the surroundings carry the place along (KLT); in every picture it is then fitted to the
-patch as it was tapped, so that errors do not add up. Where the tapped look is gone (seen from nearer, or from the
-side) a look taken on the way stands in, and its own uncertainty is added. A place that was lost is searched for
-along the caller's guesses, or around where it was last seen.
+From picture to picture the surroundings carry the place along (KLT); in every picture it is then fitted to
+the patch as it was tapped, so that errors do not add up. Where the tapped look is gone (seen from nearer,
+or from the side) a look taken on the way stands in, and its own uncertainty is added. A place that was lost
+is searched for along the caller's guesses, or around where it was last seen.
 """
 
 import math
@@ -28,7 +28,9 @@ _LEAST_SUPPORT = 0.35
 _SEARCH = 5
 _LEAST_SIGMA = 0.2
 _SIGMA_PER_LOG_SCALE = 0.8
-"""A place seen from nearer or farther looks different: so much is added per factor e [px of the tapped frame]."""
+"""A place seen from nearer or farther looks different: so much is added per factor e [px of the tapped
+frame].
+"""
 _NEW_LOOK_SCALE = 1.25
 _MOST_SIGMA = 4.0
 _POINTS_WANTED = 14
@@ -49,7 +51,9 @@ class _Look:
 
 @dataclass(frozen=True, eq=False)
 class _Fit:
-    """The place in the present picture: warp from the tapped patch, variance [px²], score, support, and by which look."""
+    """The place in the present picture: warp from the tapped patch, variance [px²], score, support,
+    and by which look.
+    """
 
     warp: Warp
     variance: float
@@ -93,9 +97,10 @@ class PatchTracker:
         The first of `guesses` is the most likely one. Raises InputError for a picture of another size.
         """
         if picture.shape != self._picture.shape:
+            height, width = picture.shape
             raise InputError(
-                f"the picture is {picture.shape[1]} × {picture.shape[0]}; this place is followed in pictures of "
-                f"{self._size.width} × {self._size.height}"
+                f"the picture is {width} by {height} px; this place is followed in pictures of "
+                f"{self._size.width} by {self._size.height} px"
             )
         motion = None if self._lost_for else self._motion_to(picture, guesses)
         fit = self._best(picture, self._starts(motion, guesses))
@@ -108,7 +113,11 @@ class PatchTracker:
         if guesses:
             shift = (guesses[0].u - float(self._warp[0, 2]), guesses[0].v - float(self._warp[1, 2]))
         motion = flow_between(self._picture, picture, self._points, shift)
-        return motion if motion or not guesses else flow_between(self._picture, picture, self._points, (0.0, 0.0))
+        return (
+            motion
+            if motion or not guesses
+            else flow_between(self._picture, picture, self._points, (0.0, 0.0))
+        )
 
     def _starts(self, motion: Motion | None, guesses: Sequence[Guess]) -> Iterable[Warp]:
         if motion is not None:

@@ -1,7 +1,7 @@
 """Affine warps from a patch to a picture, as (2, 3) arrays.
 
-A warp maps patch coordinates (x right, y down, (0, 0) at the patch's centre) to pixels (u, v): its last column
-is the pixel of the patch's centre.
+A warp maps patch coordinates (x right, y down, (0, 0) at the patch's centre) to pixels (u, v): its last
+column is the pixel of the patch's centre.
 """
 
 import math

@@ -1,0 +1,205 @@
+"""Follows one tapped place: through the stored frames up to now, then live, while the robot moves or
+stands.
+"""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Coroutine, Iterable
+from dataclasses import replace
+from math import radians
+from typing import Any, TypeVar
+
+import numpy as np
+
+from tapreach.errors import PoseExpired, PoseNotYetKnown, TapreachError
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.pixel import Pixel, require_inside
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.clock import MS, SECOND
+from tapreach.robot.messages import Frame
+from tapreach.tasks import following
+from tapreach.tasks.guessing import DISTANCES, guesses_for
+from tapreach.tasks.sighting import TAP_SIGMA, Sighting, is_apart, ray_of, sigma_in_motion
+from tapreach.tasks.task import Tap, TaskContext
+from tapreach.vision.track import Track, TrackStatus
+
+T = TypeVar("T")
+
+UNSURE_FACTOR = 2.0
+"""An unsure pixel counts with this many times its sigma."""
+_RATE_OVER_NS = 40 * MS
+_POSE_PATIENCE_NS = SECOND
+_SKIP_DISTANCE, _SKIP_ANGLE = 0.02, radians(2.0)
+
+
+class TargetLost(TapreachError):
+    """The followed place cannot be seen any more, and there is not enough for a position."""
+
+
+class Follower:
+    """Sightings of one tapped place, newest last in `sightings`.
+
+    key: under which the tracker is kept where the computing is done.
+    """
+
+    def __init__(self, context: TaskContext, tap: Tap, key: int) -> None:
+        self._context = context
+        self._tap = tap
+        self._key = key
+        self._frame_id = tap.frame_id
+        self.sightings: list[Sighting] = []
+        self.weakness = ""
+        self.loss = ""
+        """Why it is not seen in the newest frame; '' while it is."""
+        self.point_in_world: FloatArray | None = None
+        """Where the target is (3,) [m], once somebody knows it: makes for better guesses."""
+
+    @property
+    def last(self) -> Sighting:
+        """The newest sighting."""
+        return self.sightings[-1]
+
+    async def open(self) -> Sighting:
+        """Look up the tapped frame and begin. Raises FrameError, PoseError, InputError, PictureBroken."""
+        frame = self._context.frames.get(self._tap.frame_id)
+        pixel = require_inside(Pixel(self._tap.u, self._tap.v), frame.size)
+        world_from_base = await self.pose_at(frame.captured_ns)
+        self.weakness = await self._context.compute.call(
+            following.open_track, self._key, frame.jpeg, pixel.u, pixel.v
+        )
+        sigma = self._in_motion(TAP_SIGMA, frame.captured_ns)
+        self.sightings.append(Sighting(frame.frame_id, frame.captured_ns, pixel, sigma, 1.0, world_from_base))
+        return self.last
+
+    async def close(self) -> None:
+        """Forget the tracker."""
+        await self._context.compute.call(following.close_track, self._key)
+
+    async def catch_up(self) -> None:
+        """Follow through the stored frames up to the newest, leaving out those between which little moved."""
+        while frames := self._worth_following(self._context.frames.since(self._frame_id)):
+            for frame in frames:
+                await self._follow(frame)
+
+    async def during(self, motion: Coroutine[Any, Any, T], after_each: Callable[[], Awaitable[None]]) -> T:
+        """Follow live frames until `motion` has ended, calling `after_each` of them; return the motion's
+        result.
+
+        When following fails, or this is cancelled, the motion is cancelled and seen to end first.
+        """
+        moving = asyncio.create_task(motion)
+        try:
+            while not moving.done():
+                await self._follow_next(moving)
+                await after_each()
+            return moving.result()
+        finally:
+            if not moving.done():
+                moving.cancel()
+                await asyncio.wait({moving})
+
+    async def look(self, frames: int = 4) -> Sighting | None:
+        """Watch `frames` frames at rest; make one sighting of them, appended, or return None when not seen.
+
+        Frames at rest share their errors, so that they count as one.
+        """
+        seen: list[Sighting] = []
+        for _ in range(frames):
+            sighting = await self._follow(await self._context.next_frame(self._frame_id))
+            if sighting is not None:
+                self.sightings.pop()
+                seen.append(sighting)
+        if not seen:
+            return None
+        u, v = np.mean([(each.pixel.u, each.pixel.v) for each in seen], axis=0)
+        sigma = float(np.mean([each.sigma for each in seen]))
+        self.sightings.append(replace(seen[-1], pixel=Pixel(float(u), float(v)), sigma=sigma))
+        return self.last
+
+    async def pose_at(self, captured_ns: int) -> PlanarPose:
+        """Return world_from_base at a time, waiting up to a second for odometry to arrive. Raises
+        PoseError.
+        """
+        clock = self._context.clock
+        until_ns = clock.now_ns() + _POSE_PATIENCE_NS
+        while True:
+            try:
+                return self._context.poses.at(captured_ns)
+            except PoseNotYetKnown:
+                if clock.now_ns() >= until_ns:
+                    raise
+            await clock.sleep_until(clock.now_ns() + 10 * MS)
+
+    async def _follow_next(self, moving: asyncio.Task[Any]) -> None:
+        waiting = asyncio.ensure_future(self._context.next_frame(self._frame_id))
+        try:
+            await asyncio.wait({waiting, moving}, return_when=asyncio.FIRST_COMPLETED)
+            if waiting.done():
+                await self._follow(waiting.result())
+        finally:
+            waiting.cancel()
+
+    async def _follow(self, frame: Frame) -> Sighting | None:
+        self._frame_id = frame.frame_id
+        world_from_base = await self.pose_at(frame.captured_ns)
+        guesses = guesses_for(self.last, world_from_base, self._context.description, self._distances())
+        track = await self._context.compute.call(following.follow, self._key, frame.jpeg, guesses)
+        self.loss = track.reason if track.status is TrackStatus.LOST else ""
+        if track.pixel is None or not track.pixel.is_inside(frame.size):
+            return None
+        sigma = self._in_motion(_sigma_of(track), frame.captured_ns)
+        self.sightings.append(
+            Sighting(frame.frame_id, frame.captured_ns, track.pixel, sigma, track.scale, world_from_base)
+        )
+        return self.last
+
+    def _distances(self) -> tuple[float, ...]:
+        """Return the distances to guess with, along the line of sight of the last sighting."""
+        if self.point_in_world is None:
+            return DISTANCES
+        origin = ray_of(self.last, self._context.description).origin
+        return (float(np.linalg.norm(self.point_in_world - origin)),)
+
+    def _in_motion(self, sigma: float, captured_ns: int) -> float:
+        poses, focal = self._context.poses, self._context.description.camera.fx
+        try:
+            step = poses.at(captured_ns - _RATE_OVER_NS).between(poses.at(captured_ns))
+        except PoseExpired:
+            return sigma
+        return sigma_in_motion(sigma, step, _RATE_OVER_NS / SECOND, focal)
+
+    def _worth_following(self, frames: list[Frame]) -> list[Frame]:
+        """Return the frames between which the robot moved enough to matter, the newest one, and
+        one a second.
+        """
+        kept: list[Frame] = []
+        for frame in frames:
+            if frame is frames[-1] or self._moved_since(kept[-1] if kept else None, frame):
+                kept.append(frame)
+        return kept
+
+    def _moved_since(self, kept: Frame | None, frame: Frame) -> bool:
+        before_ns = kept.captured_ns if kept is not None else self.last.captured_ns
+        if frame.captured_ns - before_ns >= SECOND:
+            return True
+        try:
+            first, second = self._context.poses.at(before_ns), self._context.poses.at(frame.captured_ns)
+        except (PoseExpired, PoseNotYetKnown):
+            return True
+        return is_apart(first, second, _SKIP_DISTANCE, _SKIP_ANGLE)
+
+
+def _sigma_of(track: Track) -> float:
+    return track.sigma * (1.0 if track.status is TrackStatus.FOLLOWED else UNSURE_FACTOR)
+
+
+def thinned(
+    stops: Iterable[Sighting], others: Iterable[Sighting], distance: float, angle: float
+) -> list[Sighting]:
+    """Return all `stops`, and those of the `others` whose pose lies apart from all kept, in the order
+    of time.
+    """
+    kept = list(stops)
+    for sighting in others:
+        if all(is_apart(each.world_from_base, sighting.world_from_base, distance, angle) for each in kept):
+            kept.append(sighting)
+    return sorted(kept, key=lambda each: each.captured_ns)

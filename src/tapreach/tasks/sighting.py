@@ -1,0 +1,66 @@
+"""One sighting of a target by the robot: what the tracker said of a frame, and where the base was then."""
+
+import math
+from dataclasses import dataclass
+
+from tapreach.estimation.observation import Observation
+from tapreach.geometry.pixel import Pixel
+from tapreach.geometry.planar_motion import PlanarPose, wrapped
+from tapreach.geometry.ray import Ray
+from tapreach.robot.config import RobotDescription
+
+TIMING_SIGMA = 0.004
+"""How far the capture time of a frame may be off against the odometry, one sigma [s]."""
+NEAREST = 0.5
+"""Distance [m] at which an advance moves the picture as much as is reckoned with."""
+TAP_SIGMA = 0.3
+"""The tapped pixel itself: what is followed is the patch around it, rounded by the camera's own sampling
+[px].
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """The target in one frame. sigma: one standard deviation of u and of v [px], motion included."""
+
+    frame_id: int
+    captured_ns: int
+    pixel: Pixel
+    sigma: float
+    scale: float
+    world_from_base: PlanarPose
+
+
+def observation_of(sighting: Sighting, description: RobotDescription) -> Observation:
+    """Return it as the estimator wants it."""
+    return Observation(
+        sighting.pixel,
+        sighting.sigma,
+        description.camera.model(),
+        sighting.world_from_base.to_rigid(),
+        description.camera.mount.base_from_camera(),
+    )
+
+
+def ray_of(sighting: Sighting, description: RobotDescription) -> Ray:
+    """Return the line of sight in the world."""
+    (direction,) = description.camera.model().unproject([sighting.pixel.to_array()])
+    world_from_camera = sighting.world_from_base.to_rigid() * description.camera.mount.base_from_camera()
+    return Ray(world_from_camera.translation, world_from_camera.rotation.apply(direction))
+
+
+def sigma_in_motion(sigma: float, step: PlanarPose, duration: float, focal: float) -> float:
+    """Return `sigma` [px] with what motion adds: the picture's speed times the uncertainty of the frame's
+    time.
+
+    step: how the base moved in the `duration` [s] before the frame; focal [px].
+    """
+    turned, advanced = abs(wrapped(step.heading)), math.hypot(step.x, step.y)
+    speed_px = focal * (turned + advanced / NEAREST) / duration
+    return math.hypot(sigma, speed_px * TIMING_SIGMA)
+
+
+def is_apart(first: PlanarPose, second: PlanarPose, distance: float, angle: float) -> bool:
+    """Tell whether two poses of the base differ by more than `distance` [m] or `angle` [rad]."""
+    step = first.between(second)
+    return math.hypot(step.x, step.y) > distance or abs(wrapped(step.heading)) > angle

@@ -1,0 +1,75 @@
+"""From an estimate to the target that the page shows."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tapreach.estimation.point_estimate import PointEstimate
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.geometry.ray import Ray
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.sighting import Sighting, ray_of
+from tapreach.tasks.target import Target, TargetSource
+from tapreach.tasks.task import Tap
+
+
+@dataclass(frozen=True)
+class TargetReport:
+    """What stays the same while a target is worked on."""
+
+    target_id: int
+    source: TargetSource
+    tap: Tap
+    description: RobotDescription
+
+    def target(
+        self,
+        sightings: Sequence[Sighting],
+        estimate: PointEstimate | None,
+        is_following: bool,
+        reason: str = "",
+    ) -> Target:
+        """Return the target as it stands; `reason` replaces the estimate's own."""
+        here = sightings[-1].world_from_base
+        point = estimate.point_in_world if estimate is not None else None
+        rays = tuple(ray_of(sighting, self.description) for sighting in sightings)
+        return Target(
+            target_id=self.target_id,
+            source=self.source,
+            status=str(estimate.status) if estimate is not None else "following",
+            reason=reason or (estimate.reason if estimate is not None else ""),
+            advice=estimate.advice if estimate is not None else "",
+            frame_id=self.tap.frame_id,
+            u=self.tap.u,
+            v=self.tap.v,
+            point_in_world=point,
+            point_cov_in_world=estimate.point_cov_in_world if estimate is not None else None,
+            range=floor_distance(here, point) if point is not None else None,
+            range_interval=_range_interval(here, rays, estimate),
+            rays_in_world=rays,
+            is_following=is_following,
+        )
+
+
+def floor_distance(world_from_base: PlanarPose, point_in_world: np.ndarray) -> float:
+    """Return the distance on the floor from the base's origin to below the point [m]."""
+    return math.hypot(
+        float(point_in_world[0]) - world_from_base.x, float(point_in_world[1]) - world_from_base.y
+    )
+
+
+def _range_interval(
+    here: PlanarPose, rays: Sequence[Ray], estimate: PointEstimate | None
+) -> tuple[float, float] | None:
+    """Carry the interval along the reference ray over to the distance from where the base is now."""
+    if estimate is None or estimate.range_interval_95 is None:
+        return None
+    ray = rays[0]
+    near, far = estimate.range_interval_95
+    ends = [
+        floor_distance(here, ray.at(near)),
+        math.inf if far is None else floor_distance(here, ray.at(far)),
+    ]
+    return min(ends), max(ends)

@@ -1,0 +1,171 @@
+"""A whole robot in simulated time: world, camera, control loop, operator, frames, poses; what a task needs."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from tapreach.control.authority import Authority
+from tapreach.control.deadman import Deadman
+from tapreach.control.emergency_stop import EmergencyStop
+from tapreach.control.lease import Lease
+from tapreach.control.loop import ControlLoop
+from tapreach.control.loop_pilot import LoopPilot
+from tapreach.drivers.sim.faults import SimFaults
+from tapreach.drivers.sim.inline import InlineSimRobot
+from tapreach.drivers.sim.scene import Scene
+from tapreach.drivers.sim.truth import ask_truth
+from tapreach.errors import LinkLost
+from tapreach.estimation.pose_history import PoseHistory
+from tapreach.robot.clock import MS, SECOND, ManualClock
+from tapreach.robot.config import RobotDescription, load_robot
+from tapreach.robot.frame_store import FrameStore
+from tapreach.robot.interface import Robot
+from tapreach.robot.messages import Frame, Odometry
+from tapreach.tasks.compute import InlineCompute
+from tapreach.tasks.runner import TaskProgress, TaskRunner
+from tapreach.tasks.target import Target
+from tapreach.tasks.task import TaskContext, TaskReport
+
+ROOT = Path(__file__).resolve().parents[2]
+OPERATOR = 1
+CAMERA_SILENCE_NS = 2 * SECOND
+
+
+def sim_description() -> RobotDescription:
+    return load_robot(ROOT / "robots" / "sim.toml")
+
+
+class Frames:
+    """Stores what the camera sends and lets tasks wait for the next."""
+
+    def __init__(self, robot: Robot, clock: ManualClock) -> None:
+        self.store = FrameStore()
+        self._clock = clock
+        self._arrived = asyncio.Event()
+        self.is_silent = False
+        robot.frames.subscribe(self._take)
+
+    def _take(self, frame: Frame) -> None:
+        if not self.is_silent:
+            self.store.add(frame)
+            self._arrived.set()
+
+    async def next_frame(self, frame_id: int) -> Frame:
+        until_ns = self._clock.now_ns() + CAMERA_SILENCE_NS
+        while (newest := self.store.newest) is None or newest.frame_id <= frame_id:
+            if self._clock.now_ns() >= until_ns:
+                raise LinkLost("no picture for 2 s")
+            await self._clock.sleep_until(self._clock.now_ns() + 5 * MS)
+        return newest
+
+
+@dataclass
+class Rig:
+    """Everything, running; `advance` turns the time."""
+
+    clock: ManualClock
+    robot: Robot
+    loop: ControlLoop
+    runner: TaskRunner
+    frames: Frames
+    context: TaskContext
+    targets: list[Target] = field(default_factory=list)
+    progress: list[TaskProgress] = field(default_factory=list)
+
+    async def advance(self, seconds: float) -> None:
+        await self.clock.advance(round(seconds * SECOND))
+
+    async def finish(self, at_most: float = 60.0) -> TaskProgress:
+        """Turn the time until the task has ended."""
+        await self.until(lambda: not self.runner.is_running, at_most)
+        assert self.runner.progress is not None
+        return self.runner.progress
+
+    async def until(self, condition: Callable[[], bool], at_most: float = 20.0) -> None:
+        end_ns = self.clock.now_ns() + round(at_most * SECOND)
+        while not condition():
+            assert self.clock.now_ns() < end_ns, f"did not happen within {at_most} s"
+            await self.clock.advance(10 * MS)
+
+
+@asynccontextmanager
+async def running_rig(make_robot: Callable[[ManualClock], Robot]) -> AsyncIterator[Rig]:
+    """A rig around a robot, with an operator who holds the lease and never lets go."""
+    clock = ManualClock()
+    robot = make_robot(clock)
+    poses, frames = PoseHistory(), Frames(robot, clock)
+    robot.base.subscribe(lambda reading: _remember(poses, reading))
+    deadman, lease = Deadman(clock), Lease(clock)
+    authority = Authority(robot, clock, lease, deadman, EmergencyStop(clock, lambda: None))
+    loop = ControlLoop(authority)
+    context = TaskContext(
+        description=robot.description,
+        robot=robot,
+        pilot=LoopPilot(loop, robot),
+        frames=frames.store,
+        poses=poses,
+        compute=InlineCompute(),
+        clock=clock,
+        next_frame=frames.next_frame,
+        report=lambda report: None,
+        show_target=lambda target: rig.targets.append(target),
+    )
+    runner = TaskRunner(context, loop, lambda progress: rig.progress.append(progress))
+    rig = Rig(clock, robot, loop, runner, frames, context)
+    await robot.connect()
+    lease.request(OPERATOR)
+    tasks = [asyncio.create_task(_stay(deadman, clock)), asyncio.create_task(loop.run())]
+    try:
+        yield rig
+    finally:
+        closing = asyncio.create_task(runner.close())
+        await rig.until(closing.done)
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+        await robot.close()
+
+
+def _remember(poses: PoseHistory, reading: Odometry) -> None:
+    if not len(poses) or reading.captured_ns > poses.newest()[0]:
+        poses.add(reading.captured_ns, reading.world_from_base)
+
+
+async def _stay(deadman: Deadman, clock: ManualClock) -> None:
+    while True:
+        deadman.heard()
+        await clock.sleep_until(clock.now_ns() + 50 * MS)
+
+
+def sim_robot(
+    scene: Scene, seed: int = 0, faults: SimFaults | None = None
+) -> Callable[[ManualClock], InlineSimRobot]:
+    return lambda clock: InlineSimRobot(sim_description(), scene, clock, faults, seed)
+
+
+async def tapped_surface(
+    robot: InlineSimRobot, captured_ns: int, u: float, v: float
+) -> tuple[str, NDArray[np.float64]] | None:
+    """What truly lies under a pixel: the object's name ('' for the room) and the point in the world (3,)."""
+    truth = await ask_truth(robot, captured_ns)
+    camera = robot.description.camera.model()
+    (direction,) = camera.unproject([[u, v]])
+    pose = truth.camera_pose
+    ray = np.asarray(pose.rotation.apply(direction))
+    world = robot._world
+    assert world is not None
+    geom = np.zeros(1, np.int32)
+    distance = mujoco.mj_ray(
+        world.model, world.data, np.asarray(pose.translation), ray, None, 1, world.model.body("base").id, geom
+    )
+    if distance < 0.0:
+        return None
+    body = world.model.body(int(world.model.geom_bodyid[geom[0]])).name
+    name = body if body in {thing.name for thing in truth.objects} else ""
+    return name, np.asarray(pose.translation) + distance * ray
