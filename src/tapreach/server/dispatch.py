@@ -1,0 +1,42 @@
+"""Which method answers which request."""
+
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from tapreach.server import messages as m
+from tapreach.server.requests_driving import DrivingRequests
+from tapreach.server.requests_looking import LookingRequests
+from tapreach.server.requests_tasks import TaskRequests
+from tapreach.server.station import Station
+from tapreach.server.visitor import Visitor
+
+Answer = m.Ack | m.Pong | m.Welcome
+Answerer = Callable[[Visitor, Any], Answer | Awaitable[Answer]]
+
+
+def answerers(station: Station) -> dict[type[m.Request], Answerer]:
+    """Return the method for every type of request; a test holds it against messages.FromPage."""
+    driving, looking, tasks = DrivingRequests(station), LookingRequests(station), TaskRequests(station)
+    return {
+        m.Hello: looking.hello,
+        m.Ping: looking.ping,
+        m.Capture: looking.capture,
+        m.Heartbeat: driving.heartbeat,
+        m.Drive: driving.drive,
+        m.Stop: driving.stop,
+        m.EmergencyStop: driving.emergency_stop,
+        m.EmergencyReset: driving.emergency_reset,
+        m.ArmStep: driving.arm_step,
+        m.ArmGoto: driving.arm_goto,
+        m.LeaseRequest: driving.lease_request,
+        m.LeaseRelease: driving.lease_release,
+        m.LeaseAnswer: driving.lease_answer,
+        m.TapTarget: tasks.tap,
+        m.TargetClear: tasks.target_clear,
+        m.TaskCancel: tasks.task_cancel,
+        m.GuideStart: tasks.guide_start,
+        m.GuideTap: tasks.guide_step,
+        m.GuideValue: tasks.guide_step,
+        m.GuideAct: tasks.guide_step,
+        m.GuideEnd: tasks.guide_step,
+    }

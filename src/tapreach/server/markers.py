@@ -1,0 +1,88 @@
+"""Where the targets fall in a frame: computed once per frame, travelling with its pixels."""
+
+import json
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from tapreach.geometry.camera import Camera
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.gaussian import confidence_ellipse
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.config import CameraSection
+from tapreach.tasks.target import Target
+
+SPHERE_POINTS = 24
+
+
+def _great_circles() -> FloatArray:
+    """Points on the unit sphere along its three great circles, (3 * SPHERE_POINTS, 3)."""
+    angles = np.linspace(0.0, 2.0 * np.pi, SPHERE_POINTS, endpoint=False)
+    c, s, zero = np.cos(angles), np.sin(angles), np.zeros(SPHERE_POINTS)
+    circles = [np.stack(axes, axis=1) for axes in ((c, s, zero), (c, zero, s), (zero, c, s))]
+    return np.concatenate(circles)
+
+
+_ON_SPHERE = _great_circles()
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A target's position and the surface of its 95 % region, in the world: (1 + n, 3)."""
+
+    target_id: int
+    points_in_world: FloatArray
+    state: str
+
+    @classmethod
+    def of(cls, target: Target) -> "Mark | None":
+        """Return what is to be drawn of a target; None while it has no position."""
+        if target.point_in_world is None:
+            return None
+        points = target.point_in_world[None, :]
+        if target.point_cov_in_world is not None:
+            region = confidence_ellipse(target.point_cov_in_world)
+            surface = (_ON_SPHERE * region.half_axes) @ region.directions.T
+            points = np.concatenate([points, target.point_in_world + surface])
+        return cls(target.target_id, points, "followed" if target.is_following else "predicted")
+
+
+class MarkerProjection:
+    """Projects marks into the robot's camera."""
+
+    def __init__(self, section: CameraSection) -> None:
+        self._camera: Camera = section.model()
+        self._camera_from_base: RigidTransform = section.mount.base_from_camera().inv()
+
+    def meta(self, world_from_base: PlanarPose | None, marks: list[Mark]) -> bytes:
+        """Return the JSON that travels with a frame captured at `world_from_base` (None: not known)."""
+        base, markers = None, []
+        if world_from_base is not None:
+            base = [world_from_base.x, world_from_base.y, world_from_base.heading]
+            camera_from_world = self._camera_from_base * world_from_base.to_rigid().inv()
+            markers = [marker for mark in marks if (marker := self._marker(mark, camera_from_world))]
+        return json.dumps({"base": base, "markers": markers}, separators=(",", ":")).encode()
+
+    def _marker(self, mark: Mark, camera_from_world: RigidTransform) -> dict[str, object] | None:
+        projection = self._camera.project(camera_from_world.apply(mark.points_in_world))
+        if not projection.is_valid[0]:
+            return None  # behind the camera: there is nowhere to draw it
+        u, v = projection.pixels[0]
+        region = projection.pixels[1:][projection.is_valid[1:]]
+        return {
+            "target_id": mark.target_id,
+            "u": round(float(u), 2),
+            "v": round(float(v), 2),
+            "inside": bool(projection.is_inside[0]),
+            "region": _hull(region),
+            "state": mark.state,
+        }
+
+
+def _hull(pixels: FloatArray) -> list[list[float]]:
+    if len(pixels) < 3:
+        return []
+    hull = cv2.convexHull(pixels.astype(np.float32)).reshape(-1, 2)
+    return [[round(float(u), 1), round(float(v), 1)] for u, v in hull]

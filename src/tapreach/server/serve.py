@@ -1,0 +1,102 @@
+"""Running the application: the listening socket, signals, and an end that leaves nothing behind."""
+
+import asyncio
+import contextlib
+import signal
+import socket
+from collections.abc import Callable, Iterator
+
+import uvicorn
+
+from tapreach.errors import SetupError
+from tapreach.server.access import AccessPolicy
+from tapreach.server.app import create_app
+from tapreach.server.station import Station
+
+NOT_SENT_BYTES = 16_384
+"""Kernel buffer behind which a slow viewer's frames wait: small, so that they are fresh when they leave."""
+MOST_MESSAGE_BYTES = 1_000_000
+"""Beyond this a WebSocket message closes its socket (1009); from 16 kB up it is refused with an answer."""
+PING_S = 2.0
+
+
+def listening_socket(host: str, port: int) -> socket.socket:
+    """Return a socket that listens; port 0 takes any free one. Raises SetupError where that cannot be."""
+    listener = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+            # Accepted sockets inherit it.
+            listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, NOT_SENT_BYTES)
+        listener.bind((host, port))
+        listener.listen(128)
+    except OSError as error:
+        listener.close()
+        raise SetupError(
+            f"cannot listen on {host} port {port}: {error.strerror}; choose another with --port"
+        ) from error
+    return listener
+
+
+class _Server(uvicorn.Server):
+    """uvicorn without its signal handlers, which would raise the signal again before we have cleaned up."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        yield
+
+
+async def serve(
+    station: Station,
+    listener: socket.socket,
+    policy: AccessPolicy,
+    on_ready: Callable[[], None] = lambda: None,
+) -> None:
+    """Start the station, serve until SIGINT or SIGTERM, stop everything.
+
+    Raises what ended the control loop, when that is why it ends, and DriverError or SetupError of the robot.
+    """
+    config = uvicorn.Config(
+        create_app(station, policy),
+        lifespan="off",
+        log_level="warning",
+        access_log=False,
+        ws_per_message_deflate=False,
+        ws_max_size=MOST_MESSAGE_BYTES,
+        ws_ping_interval=PING_S,
+        ws_ping_timeout=PING_S,
+        timeout_graceful_shutdown=1,
+    )
+    server = _Server(config)
+    with _signals_call(lambda: setattr(server, "should_exit", True)):
+        try:
+            await station.start()
+            await _serve_until_failure(server, station, listener, on_ready)
+        finally:
+            await station.stop()
+            listener.close()
+
+
+async def _serve_until_failure(
+    server: _Server, station: Station, listener: socket.socket, on_ready: Callable[[], None]
+) -> None:
+    assert station.failed is not None
+    serving = asyncio.create_task(server.serve(sockets=[listener]), name="http")
+    on_ready()
+    await asyncio.wait({serving, station.failed}, return_when=asyncio.FIRST_COMPLETED)
+    server.should_exit = True
+    await serving
+    if station.failed.done():
+        station.failed.result()
+
+
+@contextlib.contextmanager
+def _signals_call(callback: Callable[[], object]) -> Iterator[None]:
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, callback)
+    try:
+        yield
+    finally:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.remove_signal_handler(number)

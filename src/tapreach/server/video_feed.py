@@ -1,0 +1,33 @@
+"""The newest frame, for everybody who watches."""
+
+import asyncio
+from collections.abc import Callable
+
+from tapreach.robot.messages import Frame
+from tapreach.server.frame_packet import FramePacket
+
+
+class VideoFeed:
+    """Holds one frame. `describe` makes its meta, once per frame and only when somebody watches."""
+
+    def __init__(self, describe: Callable[[Frame], bytes]) -> None:
+        self._describe = describe
+        self._newest: Frame | None = None
+        self._packet: FramePacket | None = None
+        self._arrival = asyncio.Event()
+        self.viewers = 0
+
+    def publish(self, frame: Frame) -> None:
+        """Put a frame in the place of the one before."""
+        self._newest = frame
+        self._packet = None
+        self._arrival.set()
+        self._arrival = asyncio.Event()
+
+    async def newer_than(self, frame_id: int) -> FramePacket:
+        """Return the newest frame as soon as it is newer than `frame_id`."""
+        while self._newest is None or self._newest.frame_id <= frame_id:
+            await self._arrival.wait()
+        if self._packet is None:
+            self._packet = FramePacket(self._newest, self._describe(self._newest))
+        return self._packet
