@@ -31,10 +31,26 @@ install_packages() {
   fi
 }
 
+# `env` carries the answer to questions through sudo; the package lists may be empty or old on a fresh machine.
+# shellcheck disable=SC2086  # $1 and $missing_packages are lists of words
 run_apt() {
-  # `env` carries the answer to questions through sudo; lists may be empty or old on a fresh machine.
-  # shellcheck disable=SC2086  # both are lists of words
-  $1 env DEBIAN_FRONTEND=noninteractive apt-get update -qq &&
-    $1 env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing_packages </dev/null &&
+  quietly $1 env DEBIAN_FRONTEND=noninteractive apt-get update &&
+    quietly $1 env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing_packages &&
     missing_packages=""
+}
+
+# A person sees apt's bars; a log gets its words only when it fails.
+quietly() {
+  if is_interactive; then
+    "$@"
+    return
+  fi
+  words=$(mktemp)
+  if "$@" >"$words" 2>&1 </dev/null; then
+    rm "$words"
+  else
+    cat "$words" >&2
+    rm "$words"
+    return 1
+  fi
 }
