@@ -1,5 +1,6 @@
 """Bodies of revolution as OBJ, with texture coordinates and normals. Unit size: radius 1, height 1, base at 0."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +45,7 @@ def write_obj(path: Path, profile: Profile) -> None:
                     angle = 2 * np.pi * step / SEGMENTS
                     c, s = np.cos(angle), np.sin(angle)
                     file.write(f"v {radius * c:.5f} {radius * s:.5f} {height:.5f}\n")
-                    file.write(f"vt {step / SEGMENTS:.5f} {v:.5f}\n")
+                    file.write(f"vt {step / SEGMENTS + 0.25:.5f} {v:.5f}\n")  # the front looks along -x
                     file.write(f"vn {along * c:.4f} {along * s:.4f} {up:.4f}\n")
         for index, (ends, _) in enumerate(strips):
             _write_faces(file.write, index * 2 * (SEGMENTS + 1) + 1, ends[0][0] > 0, ends[1][0] > 0)
@@ -66,10 +67,27 @@ def _normal(profile: Profile, index: int) -> NDArray[np.float64]:
     return np.asarray(outward / np.linalg.norm(outward))
 
 
-def _write_faces(write: object, first: int, has_bottom: bool, has_top: bool) -> None:
+def _write_faces(write: Callable[[str], object], first: int, has_bottom: bool, has_top: bool) -> None:
     for step in range(SEGMENTS):
         a, b = first + step, first + step + 1
         c, d = b + SEGMENTS + 1, a + SEGMENTS + 1
         for needed, corners in ((has_bottom, (a, b, c)), (has_top, (a, c, d))):
             if needed:
-                write("f " + " ".join(f"{k}/{k}/{k}" for k in corners) + "\n")  # type: ignore[operator]
+                write("f " + " ".join(f"{k}/{k}/{k}" for k in corners) + "\n")
+
+
+def write_box(path: Path) -> None:
+    """Write a cube of edge 2 about the origin whose texture stands upright on all four sides."""
+    up = np.array([0.0, 0.0, 1.0])
+    faces = [(np.array(side, dtype=float), up) for side in ((-1, 0, 0), (0, 1, 0), (1, 0, 0), (0, -1, 0))]
+    faces += [(up, np.array([1.0, 0, 0])), (-up, np.array([1.0, 0, 0]))]
+    with path.open("w", encoding="ascii", newline="\n") as file:
+        for outward, top in faces:
+            right = np.cross(top, outward)
+            for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+                x, y, z = outward + s * right + t * top
+                file.write(f"v {x:g} {y:g} {z:g}\nvt {(s + 1) / 2:g} {(t + 1) / 2:g}\n")
+                file.write(f"vn {outward[0]:g} {outward[1]:g} {outward[2]:g}\n")
+        for face in range(6):
+            a, b, c, d = (4 * face + k for k in (1, 2, 3, 4))
+            file.write(f"f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}\nf {a}/{a}/{a} {c}/{c}/{c} {d}/{d}/{d}\n")

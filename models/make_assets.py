@@ -9,7 +9,7 @@ from pathlib import Path
 
 from asset_drawing import save_texture
 from asset_labels import LABELS
-from asset_meshes import MESHES, write_obj
+from asset_meshes import MESHES, write_box, write_obj
 from asset_surfaces import SURFACES
 
 
@@ -20,6 +20,7 @@ def make_assets(folder: Path) -> None:
         save_texture(folder / f"{name}.png", draw(), colours)
     for name, profile in MESHES.items():
         write_obj(folder / f"{name}.obj", profile)
+    write_box(folder / "box.obj")
 
 
 if __name__ == "__main__":

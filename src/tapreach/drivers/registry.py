@@ -10,9 +10,9 @@ from tapreach.robot.interface import Robot
 
 FACTORIES = {
     "fake": "tapreach.drivers.fake:FakeRobot",
-    "sim": "tapreach.drivers.sim.robot:SimRobot",
+    "sim": "tapreach.drivers.sim.factory:make_sim_robot",
 }
-"""Name in the robot file: module and class."""
+"""Name in the robot file: module and what makes the robot."""
 
 
 class RobotFactory(Protocol):

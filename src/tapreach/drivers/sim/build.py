@@ -7,7 +7,7 @@ import numpy as np
 
 from tapreach.drivers.sim.build_materials import Palette
 from tapreach.drivers.sim.build_objects import add_object
-from tapreach.drivers.sim.build_room import WALL_TEXTURE, add_furniture, add_hanging, add_light, add_room
+from tapreach.drivers.sim.build_room import WALL_TEXTURE, add_furniture, add_hanging, add_light, add_room, add_sun_patches
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.scene import Scene
 from tapreach.errors import ConfigError
@@ -31,6 +31,7 @@ def build_model(scene: Scene, camera: CameraSection, faults: SimFaults) -> mujoc
     add_room(spec, palette, scene.room)
     for index, hanging in enumerate(scene.hangings):
         add_hanging(spec, palette, scene.room, index, hanging)
+        add_sun_patches(spec, palette, scene.room, scene.light, hanging)
     for index, piece in enumerate(scene.furniture):
         add_furniture(spec, palette, index, piece)
     for name, thing in zip(scene.object_names(), scene.objects, strict=True):

@@ -36,6 +36,12 @@ class Palette:
         """Return a material that shines by itself, as a window does."""
         return self._textured(texture, mujoco.mjtTexture.mjTEXTURE_2D, (1.0, 1.0), False, emission)
 
+    def mesh(self, name: str, file: str, scale: tuple[float, float, float]) -> str:
+        """Add the mesh `file` in a size of its own and return its name; it is seen, never touched."""
+        shell = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
+        self.spec.add_mesh(name=name, file=str(self.folder / f"{file}.obj"), scale=scale, inertia=shell)
+        return name
+
     def _textured(
         self,
         texture: str,

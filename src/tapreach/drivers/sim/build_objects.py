@@ -1,86 +1,70 @@
-"""Objects of a scene as MuJoCo bodies: a solid that the claw can grip under a mesh that is seen."""
+"""Objects of a scene as MuJoCo bodies: plain solids that the claw can grip, under a mesh that is seen."""
 
 import math
+from dataclasses import dataclass
 
 import mujoco
 
 from tapreach.drivers.sim.build_materials import Palette
-from tapreach.drivers.sim.scene_objects import Ball, Bottle, Box, Can, Cup, RoundObject, SceneObject
+from tapreach.drivers.sim.scene_objects import AnyObject, Ball, Bottle, Box
 
 GEOM = mujoco.mjtGeom
+UNSEEN = 3
+SEEN = 1
 FRICTION = (0.6, 0.003, 0.0001)
 ROLLING = (0.6, 0.003, 0.0006)
 
 
-def add_object(spec: mujoco.MjSpec, palette: Palette, name: str, thing: SceneObject) -> None:
+@dataclass(frozen=True)
+class Solid:
+    """One collision solid: MuJoCo's type and size, height of its middle above the body's, share of the mass."""
+
+    shape: mujoco.mjtGeom
+    size: tuple[float, float, float]
+    z: float = 0.0
+    share: float = 1.0
+
+
+def add_object(spec: mujoco.MjSpec, palette: Palette, name: str, thing: AnyObject) -> None:
     """Add one free body called `name`, its origin at the middle of its height."""
-    half = thing.tall / 2
     yaw = math.radians(thing.yaw_deg)
     body = spec.worldbody.add_body(
         name=name,
-        pos=(*thing.position, thing.up + half + 0.0005),
+        pos=(*thing.position, thing.up + thing.tall / 2 + 0.0005),
         quat=(math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)),
     )
     body.add_freejoint()
-    if isinstance(thing, Box):
-        size = [edge / 2 for edge in thing.size]
-        material = palette.cube(f"box_{thing.label}")
+    is_ball = isinstance(thing, Ball)
+    for solid in _solids(thing):
         body.add_geom(
-            name=name, type=GEOM.mjGEOM_BOX, size=size, mass=thing.weight, material=material, condim=4,
-            friction=FRICTION,
+            type=solid.shape, size=solid.size, pos=(0, 0, solid.z), mass=thing.weight * solid.share,
+            condim=6 if is_ball else 4, friction=ROLLING if is_ball else FRICTION, group=UNSEEN,
         )  # fmt: skip
-    elif isinstance(thing, Ball):
-        _add_ball(spec, body, palette, name, thing)
-    elif isinstance(thing, RoundObject):
-        _add_round(spec, body, palette, name, thing)
+    _add_looks(spec, body, palette, name, thing)
 
 
-def _add_ball(spec: mujoco.MjSpec, body: mujoco.MjsBody, palette: Palette, name: str, ball: Ball) -> None:
-    body.add_geom(
-        name=name, type=GEOM.mjGEOM_SPHERE, size=(ball.radius, 0, 0), mass=ball.weight, condim=6,
-        friction=ROLLING, group=3,
-    )  # fmt: skip
-    scale = (ball.radius, ball.radius, 2 * ball.radius)
-    _add_shown_mesh(spec, body, palette, name, "ball", f"ball_{ball.label}", scale)
-
-
-def _add_round(
-    spec: mujoco.MjSpec, body: mujoco.MjsBody, palette: Palette, name: str, thing: RoundObject
-) -> None:
-    """A cylinder carries the mass; a bottle has a wide and a narrow one."""
+def _solids(thing: AnyObject) -> list[Solid]:
+    if isinstance(thing, Box):
+        x, y, z = thing.size
+        return [Solid(GEOM.mjGEOM_BOX, (x / 2, y / 2, z / 2))]
+    if isinstance(thing, Ball):
+        return [Solid(GEOM.mjGEOM_SPHERE, (thing.radius, 0, 0))]
     radius, height = thing.radius, thing.height
-    shares = [(1.0, 0.0, 0.7), (0.45, 0.7, 1.0)] if isinstance(thing, Bottle) else [(1.0, 0.0, 1.0)]
-    for index, (width, low, high) in enumerate(shares):
-        body.add_geom(
-            name=f"{name}_{index}" if index else name,
-            type=GEOM.mjGEOM_CYLINDER,
-            size=(radius * width, height * (high - low) / 2, 0),
-            pos=(0, 0, height * ((low + high) / 2 - 0.5)),
-            mass=thing.weight * (0.9 if len(shares) > 1 and not index else 1.0 if len(shares) == 1 else 0.1),
-            condim=4,
-            friction=FRICTION,
-            group=3,
-        )
-    kind = "can" if isinstance(thing, Can) else "cup" if isinstance(thing, Cup) else "bottle"
-    label = getattr(thing, "label", "")
-    _add_shown_mesh(spec, body, palette, name, kind, f"{kind}_{label}", (radius, radius, height))
+    if isinstance(thing, Bottle):
+        trunk = Solid(GEOM.mjGEOM_CYLINDER, (radius, 0.35 * height, 0), -0.15 * height, 0.9)
+        return [trunk, Solid(GEOM.mjGEOM_CYLINDER, (0.44 * radius, 0.15 * height, 0), 0.35 * height, 0.1)]
+    return [Solid(GEOM.mjGEOM_CYLINDER, (radius, height / 2, 0))]
 
 
-def _add_shown_mesh(
-    spec: mujoco.MjSpec,
-    body: mujoco.MjsBody,
-    palette: Palette,
-    name: str,
-    mesh: str,
-    texture: str,
-    scale: tuple[float, float, float],
+def _add_looks(
+    spec: mujoco.MjSpec, body: mujoco.MjsBody, palette: Palette, name: str, thing: AnyObject
 ) -> None:
-    spec.add_mesh(
-        name=f"{name}_mesh", file=str(palette.folder / f"{mesh}.obj"), scale=scale,
-        inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+    x, y, z = thing.outer_size
+    # The box's mesh has edge 2 about its middle; the turned ones have radius 1 and height 1 on their foot.
+    is_box = isinstance(thing, Box)
+    scale = (x / 2, y / 2, z / 2 if is_box else z)
+    mesh = palette.mesh(f"{name}_mesh", thing.kind, scale)
+    body.add_geom(
+        type=GEOM.mjGEOM_MESH, meshname=mesh, pos=(0, 0, 0 if is_box else -z / 2), group=SEEN, mass=0,
+        material=palette.surface(f"{thing.kind}_{thing.label}"), contype=0, conaffinity=0,
     )  # fmt: skip
-    geom = body.add_geom(
-        name=f"{name}_shown", type=GEOM.mjGEOM_MESH, meshname=f"{name}_mesh", pos=(0, 0, -scale[2] / 2),
-        material=palette.surface(texture), contype=0, conaffinity=0, group=1,
-    )  # fmt: skip
-    geom.mass = 0.0

@@ -16,6 +16,7 @@ FLOOR_REPEAT = {"planks": 0.625, "tiles": 0.75, "carpet": 1.2, "plain": 0.5, "pa
 WALL_REPEAT = {"wallpaper": 1.4, "brick": 0.9, "plain": 0.5, "hedge": 1.3, "fence": 1.0}
 WALL_TEXTURE = {"hedge": "leaves", "fence": "bark"}
 SKIRTING_HEIGHT = 0.09
+_SHAPES = {"box": GEOM.mjGEOM_BOX, "cylinder": GEOM.mjGEOM_CYLINDER, "ellipsoid": GEOM.mjGEOM_ELLIPSOID}
 
 
 @dataclass(frozen=True)
@@ -110,6 +111,37 @@ def add_hanging(spec: mujoco.MjSpec, palette: Palette, room: Room, index: int, h
         )
 
 
+def add_sun_patches(spec: mujoco.MjSpec, palette: Palette, room: Room, light: Light, hanging: Hanging) -> None:
+    """Lay the sunlight that falls through a window's four panes on the floor, where the sun stands outside of it."""
+    wall = walls_of(room)[hanging.wall]
+    azimuth, elevation = math.radians(light.azimuth_deg), math.radians(light.elevation_deg)
+    entering = -(math.cos(azimuth) * wall.inward[0] + math.sin(azimuth) * wall.inward[1])
+    if hanging.kind != "window" or not light.shadows or light.sun < 0.3 or entering < 0.2:
+        return
+    middle = wall.foot[1] if hanging.wall in ("north", "south") else wall.foot[0]
+    reach = np.array([-math.cos(azimuth), -math.sin(azimuth)]) / math.tan(elevation)
+    half, tall = hanging.width / 2, hanging.height / 2
+    for pane, (side, up) in enumerate(((-half, 0.0), (0.0, 0.0), (-half, tall), (0.0, tall))):
+        corners = []
+        for s, t in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            along = hanging.along - middle + side + 0.04 + s * (half - 0.08)
+            x, y, z = wall.point(along, 0.02, hanging.up + up + 0.04 + t * (tall - 0.08))
+            corners.append((x + z * reach[0], y + z * reach[1]))
+        _add_patch(spec, palette, f"sun_{hanging.wall}_{hanging.along:g}_{pane}", corners)
+
+
+def _add_patch(
+    spec: mujoco.MjSpec, palette: Palette, name: str, corners: list[tuple[float, float]]
+) -> None:
+    """Add a thin bright see-through plate on the floor."""
+    points = [(x, y, z) for z in (0.003, 0.0035) for x, y in corners]
+    spec.add_mesh(name=name, uservert=np.array(points).flatten())
+    spec.worldbody.add_geom(
+        name=name, type=GEOM.mjGEOM_MESH, meshname=name, material=palette.flat("#ffe6a834", emission=0.8),
+        castshadow=False, contype=0, conaffinity=0,
+    )  # fmt: skip
+
+
 def _add_slab(
     spec: mujoco.MjSpec, wall: Wall, name: str, width: float, height: float, along: float, up: float,
     off: float, thick: float, material: str, solid: bool = False,
@@ -129,19 +161,22 @@ def add_furniture(spec: mujoco.MjSpec, palette: Palette, index: int, piece: Furn
         pos=(*piece.position, 0),
         quat=(math.cos(yaw / 2), 0, 0, math.sin(yaw / 2)),
     )
-    shapes = {"box": GEOM.mjGEOM_BOX, "cylinder": GEOM.mjGEOM_CYLINDER, "ellipsoid": GEOM.mjGEOM_ELLIPSOID}
-    for part in piece.parts():
+    for number, part in enumerate(piece.parts()):
+        is_books = part.paint == "books"
+        if is_books:  # their texture must stand upright, as only a mesh can tell
+            palette.mesh(f"books_{index}_{number}", "box", part.half)
         body.add_geom(
-            type=shapes[part.shape], size=part.half, pos=part.centre, material=_paint(palette, part),
-            contype=int(part.is_solid), conaffinity=int(part.is_solid), castshadow=part.half[2] > 0.002 or part.shape != "box",
+            type=GEOM.mjGEOM_MESH if is_books else _SHAPES[part.shape], size=part.half, pos=part.centre,
+            meshname=f"books_{index}_{number}" if is_books else "", material=_paint(palette, part),
+            contype=int(part.is_solid), conaffinity=int(part.is_solid), castshadow=not part.is_flat,
         )  # fmt: skip
 
 
 def _paint(palette: Palette, part: Part) -> str:
     if part.paint.startswith("#"):
         return palette.flat(part.paint, emission=0.6 if part.paint == "#ffe9b8" else 0.0)
-    if part.paint == "rug":
-        return palette.surface("rug")
+    if part.paint in ("rug", "books"):
+        return palette.surface(part.paint)
     if part.paint == "paving":
         return palette.surface("paving", (0.55, 0.55), per_metre=True)
     return palette.cube(part.paint)

@@ -25,6 +25,11 @@ class Part:
     paint: str
     is_solid: bool = True
 
+    @property
+    def is_flat(self) -> bool:
+        """True for what lies on the floor and throws no shadow."""
+        return self.shape == "box" and self.half[2] < 0.002
+
 
 class Furniture(Entry):
     """A piece that stands on the floor and does not move."""

@@ -1,6 +1,6 @@
 """Things that stand in a scene and can be tapped, pushed and (some) gripped."""
 
-from math import pi
+from math import prod
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 CLAW_OPENING = 0.074
 LIFT_MASS = 0.25
 
-Length = Annotated[float, Field(gt=0.0, le=3.0, allow_inf_nan=False)]
+Length = Annotated[float, Field(gt=0.0, le=10.0, allow_inf_nan=False)]
 Place = Annotated[float, Field(ge=-50.0, le=50.0, allow_inf_nan=False)]
 Angle = Annotated[float, Field(ge=-360.0, le=360.0, allow_inf_nan=False)]
 
@@ -30,24 +30,24 @@ class SceneObject(Entry):
     graspable: bool = True
 
     @property
+    def outer_size(self) -> tuple[float, float, float]:
+        """Size of the box that holds it, along its own axes [m]."""
+        raise NotImplementedError
+
+    @property
     def width(self) -> float:
         """The narrowest width across which the claw could close [m]."""
-        raise NotImplementedError
+        return min(self.outer_size[:2])
 
     @property
     def tall(self) -> float:
         """Height from its foot to its top [m]."""
-        raise NotImplementedError
-
-    @property
-    def volume(self) -> float:
-        """Outer volume [m³]."""
-        raise NotImplementedError
+        return self.outer_size[2]
 
     @property
     def weight(self) -> float:
-        """Mass [kg]; light packaging of 180 kg/m³ (at least 15 g) unless given."""
-        return self.mass if self.mass is not None else max(0.015, 180.0 * self.volume)
+        """Mass [kg]; light packaging of 150 kg/m³ of its box (at least 15 g) unless given."""
+        return self.mass if self.mass is not None else max(0.015, 150.0 * prod(self.outer_size))
 
     @model_validator(mode="after")
     def _can_be_gripped(self) -> "SceneObject":
@@ -72,16 +72,9 @@ class Box(SceneObject):
     label: Literal["tea", "mint", "oats", "crate", "cardboard"] = "tea"
 
     @property
-    def width(self) -> float:
-        return min(self.size[:2])
-
-    @property
-    def tall(self) -> float:
-        return self.size[2]
-
-    @property
-    def volume(self) -> float:
-        return self.size[0] * self.size[1] * self.size[2]
+    def outer_size(self) -> tuple[float, float, float]:
+        """See SceneObject."""
+        return self.size
 
 
 class RoundObject(SceneObject):
@@ -91,16 +84,9 @@ class RoundObject(SceneObject):
     height: Length
 
     @property
-    def width(self) -> float:
-        return 2.0 * self.radius
-
-    @property
-    def tall(self) -> float:
-        return self.height
-
-    @property
-    def volume(self) -> float:
-        return pi * self.radius**2 * self.height
+    def outer_size(self) -> tuple[float, float, float]:
+        """See SceneObject."""
+        return (2.0 * self.radius, 2.0 * self.radius, self.height)
 
 
 class Can(RoundObject):
@@ -138,16 +124,9 @@ class Ball(SceneObject):
     label: Literal["beach", "football"] = "football"
 
     @property
-    def width(self) -> float:
-        return 2.0 * self.radius
-
-    @property
-    def tall(self) -> float:
-        return 2.0 * self.radius
-
-    @property
-    def volume(self) -> float:
-        return 4.0 / 3.0 * pi * self.radius**3
+    def outer_size(self) -> tuple[float, float, float]:
+        """See SceneObject."""
+        return (2.0 * self.radius, 2.0 * self.radius, 2.0 * self.radius)
 
 
 AnyObject = Annotated[Box | Can | Bottle | Cup | Ball, Field(discriminator="kind")]

@@ -11,7 +11,6 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from tapreach.drivers.sim.build import OPENCV_FROM_MUJOCO
 from tapreach.drivers.sim.scene import Scene
-from tapreach.drivers.sim.scene_objects import Box
 from tapreach.geometry.planar_motion import PlanarPose
 
 Matrix = tuple[tuple[float, ...], ...]
@@ -117,10 +116,9 @@ class TruthTeller:
     def _object(self, index: int) -> ObjectTruth:
         name, thing = self._things[index]
         body = self._data.body(name)
-        size = thing.size if isinstance(thing, Box) else (thing.width, thing.width, thing.tall)
         centre = (float(body.xpos[0]), float(body.xpos[1]), float(body.xpos[2]))
         pose = _matrix(body.xpos, body.xmat.reshape(3, 3))
-        return ObjectTruth(name, thing.kind, centre, pose, size, thing.graspable)
+        return ObjectTruth(name, thing.kind, centre, pose, thing.outer_size, thing.graspable)
 
 
 def _matrix(position: NDArray[np.float64], rotation: NDArray[np.float64]) -> Matrix:

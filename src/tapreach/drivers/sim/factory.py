@@ -1,0 +1,12 @@
+"""Makes the simulated robot that a robot file describes."""
+
+from tapreach.drivers.sim.options import resolve_scene
+from tapreach.drivers.sim.robot import SimRobot
+from tapreach.robot.clock import Clock
+from tapreach.robot.config import RobotDescription
+
+
+def make_sim_robot(description: RobotDescription, clock: Clock) -> SimRobot:
+    """Return the robot in the scene and with the faults of the file's table [simulation]. Raises ConfigError."""
+    scene, faults = resolve_scene(description)
+    return SimRobot(description, scene, clock, faults)
