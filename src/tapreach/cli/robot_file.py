@@ -33,7 +33,7 @@ def parse_faults(assignments: Sequence[str]) -> dict[str, object]:
     """Return faults of ['slip=0.02', ...]; values are read as JSON. Raises InputError."""
     faults: dict[str, object] = {}
     for assignment in assignments:
-        name, equals, value = assignment.partition("=")
+        name, _, value = assignment.partition("=")
         try:
             faults[name.strip()] = json.loads(value)
         except json.JSONDecodeError:
