@@ -29,9 +29,21 @@ export class VideoSocket extends EventTarget {
     this.link.send(JSON.stringify({ ack: frameId }));
   }
 
+  /**
+   * A probe comes back at once: so the server knows the round trip of a link that carries nothing.
+   * @param {{probe?: number, refused?: string}} text
+   */
+  answer({ probe, refused }) {
+    if (probe !== undefined) this.link.send(JSON.stringify({ probe }));
+    if (refused !== undefined) this.dispatchEvent(new CustomEvent("broken", { detail: refused }));
+  }
+
   /** @param {ArrayBuffer | string} message */
   receive(message) {
-    if (typeof message === "string") return;
+    if (typeof message === "string") {
+      this.answer(JSON.parse(message));
+      return;
+    }
     try {
       this.dispatchEvent(new CustomEvent("frame", { detail: parseVideoMessage(message, performance.now()) }));
     } catch (error) {

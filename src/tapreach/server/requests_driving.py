@@ -50,8 +50,10 @@ class DrivingRequests:
         reason = reason or self._forbidden(visitor) or picture_refusal(captured_ns, station.clock.now_ns())
         if reason:
             return self._ack_sent(request, station.loop.stop(reason), reason, ok=False)
-        station.loop.refuse_task("the operator drives")
-        station.deadman.hold(Wish(Twist(request.linear, request.angular), captured_ns))
+        twist = Twist(request.linear, request.angular)
+        if not twist.is_zero:
+            station.loop.refuse_task("the operator drives")
+        station.deadman.hold(Wish(twist, captured_ns))
         return self._ack_sent(request, station.loop.act(), station.loop.sent.limited_by)
 
     def stop(self, visitor: Visitor, request: Stop) -> Ack:
@@ -66,7 +68,7 @@ class DrivingRequests:
         station = self._station
         station.emergency_stop.press(visitor.name)
         twist = station.loop.stop(f"emergency stop {station.emergency_stop.text}")
-        failed = station.loop.sent.limited_by if not station.robot.health.is_running else ""
+        failed = station.loop.sent.limited_by
         done = f"not confirmed by the robot: {failed}" if failed else "wheels sent zero, arm told to hold"
         return self._ack_sent(request, twist, done, ok=not failed)
 

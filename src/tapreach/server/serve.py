@@ -17,7 +17,8 @@ NOT_SENT_BYTES = 16_384
 """Kernel buffer behind which a slow viewer's frames wait: small, so that they are fresh when they leave."""
 MOST_MESSAGE_BYTES = 1_000_000
 """Beyond this a WebSocket message closes its socket (1009); from 16 kB up it is refused with an answer."""
-PING_S = 2.0
+PING_S, PING_TIMEOUT_S = 5.0, 10.0
+"""Long enough for a picture to pass a very slow link; what must be quick does not wait for this."""
 
 
 def listening_socket(host: str, port: int) -> socket.socket:
@@ -64,7 +65,7 @@ async def serve(
         ws_per_message_deflate=False,
         ws_max_size=MOST_MESSAGE_BYTES,
         ws_ping_interval=PING_S,
-        ws_ping_timeout=PING_S,
+        ws_ping_timeout=PING_TIMEOUT_S,
         timeout_graceful_shutdown=1,
     )
     server = _Server(config)

@@ -1,0 +1,185 @@
+"""Write web/net/messages.js and the tables of docs/protocol.md from src/tapreach/server/messages.py.
+
+    .venv/bin/python tools/generate_protocol.py
+
+tests/server/test_generated_protocol.py fails while they are not current.
+"""
+
+import inspect
+import json
+import typing
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel
+
+from tapreach.server import messages
+
+ROOT = Path(__file__).resolve().parents[1]
+JS = ROOT / "web" / "net" / "messages.js"
+PAGE = ROOT / "docs" / "protocol.md"
+BEGIN, END = "<!-- generated: begin -->", "<!-- generated: end -->"
+JS_TYPES = {"integer": "number", "number": "number", "string": "string", "boolean": "boolean", "null": "null"}
+WORDS = {
+    "integer": "integer",
+    "number": "number",
+    "string": "text",
+    "boolean": "true or false",
+    "null": "null",
+}
+
+Schema = dict[str, Any]
+
+
+def models_of(union: Any) -> list[type[BaseModel]]:
+    """Return the members of `A | B` or `Annotated[A | B, ...]`, in order."""
+    if typing.get_origin(union) is typing.Annotated:
+        union = typing.get_args(union)[0]
+    return list(typing.get_args(union))
+
+
+FROM_PAGE = models_of(messages.FromPage)
+FROM_SERVER = models_of(messages.FromServer)
+
+
+def parts() -> list[type[BaseModel]]:
+    """Return the models that stand inside messages, in the order of the source."""
+    named = [value for value in vars(messages).values() if inspect.isclass(value)]
+    bases = {messages.Message, messages.Request, messages.Timed}
+    return [
+        value
+        for value in named
+        if issubclass(value, messages.Message) and value not in bases | set(FROM_PAGE) | set(FROM_SERVER)
+    ]
+
+
+def js_type(schema: Schema) -> str:
+    """Return the JSDoc type of a JSON schema."""
+    if "$ref" in schema:
+        return str(schema["$ref"].rsplit("/", 1)[-1])
+    if "const" in schema:
+        return json.dumps(schema["const"])
+    if "enum" in schema:
+        return " | ".join(json.dumps(value) for value in schema["enum"])
+    if "anyOf" in schema:
+        return " | ".join(js_type(option) for option in schema["anyOf"])
+    if schema.get("type") == "array":
+        if "prefixItems" in schema:
+            return "[" + ", ".join(js_type(item) for item in schema["prefixItems"]) + "]"
+        item = js_type(schema["items"])
+        return f"({item})[]" if " " in item and not item.startswith("[") else f"{item}[]"
+    return JS_TYPES[schema["type"]]
+
+
+def words(schema: Schema) -> str:
+    """Return a JSON schema in words, for the page."""
+    if "$ref" in schema:
+        name = schema["$ref"].rsplit("/", 1)[-1]
+        return f"[{name}](#{name.lower()})"
+    if "const" in schema:
+        return f"`{json.dumps(schema['const'])}`"
+    if "enum" in schema:
+        return ", ".join(f"`{json.dumps(value)}`" for value in schema["enum"])
+    if "anyOf" in schema:
+        return " or ".join(words(option) for option in schema["anyOf"])
+    if schema.get("type") == "array":
+        if "prefixItems" in schema:
+            return "[" + ", ".join(words(item) for item in schema["prefixItems"]) + "]"
+        return f"list of {words(schema['items'])}"
+    return WORDS[schema["type"]] + limits_of(schema)
+
+
+def limits_of(schema: Schema) -> str:
+    """Return the limits of a number or text, in words."""
+    least = f" from {schema['minimum']}" if "minimum" in schema else ""
+    longest = f" of at most {schema['maxLength']} characters" if "maxLength" in schema else ""
+    return least + longest
+
+
+def fields_of(model: type[BaseModel]) -> list[tuple[str, Schema, bool]]:
+    """Return (name, schema, must be there) of each field; what the server sends is always there."""
+    is_request = issubclass(model, messages.Request)
+    schema = model.model_json_schema(mode="validation" if is_request else "serialization")
+    required = set(schema.get("required", ())) if is_request else set(schema["properties"])
+    return [(name, field, name in required) for name, field in schema["properties"].items()]
+
+
+def summary(model: type[BaseModel]) -> str:
+    """Return the docstring in one line."""
+    return " ".join((model.__doc__ or "").split())
+
+
+def typedef(model: type[BaseModel]) -> str:
+    """Return a JSDoc typedef."""
+    lines = ["/**", f" * {summary(model)}", " *", f" * @typedef {{object}} {model.__name__}"]
+    for name, field, is_required in fields_of(model):
+        shown = name if is_required else f"[{name}]"
+        comment = f" {field['description']}" if "description" in field else ""
+        lines.append(f" * @property {{{js_type(field)}}} {shown}{comment}")
+    return "\n".join([*lines, " */"])
+
+
+def union_typedef(name: str, comment: str, models: list[type[BaseModel]]) -> str:
+    """Return a JSDoc typedef of one of several."""
+    return f"/**\n * {comment}\n *\n * @typedef {{{' | '.join(m.__name__ for m in models)}}} {name}\n */"
+
+
+def render_js() -> str:
+    """Return the whole of web/net/messages.js."""
+    blocks = [
+        "/**\n * Messages of the control socket. Generated by tools/generate_protocol.py from\n"
+        " * src/tapreach/server/messages.py: do not edit.\n */",
+        f"export const PROTOCOL_VERSION = {messages.PROTOCOL_VERSION};",
+        union_typedef("FromPage", "What the page may send.", FROM_PAGE),
+        union_typedef("FromServer", "What the server sends.", FROM_SERVER),
+        *(typedef(model) for model in (*FROM_PAGE, *FROM_SERVER, *parts())),
+    ]
+    return "\n\n".join(blocks) + "\n"
+
+
+def table(model: type[BaseModel], heading: str) -> str:
+    """Return a section of the page: heading, sentence, table of fields."""
+    lines = [f"### {heading}", "", summary(model), "", "| field | value | meaning |", "|---|---|---|"]
+    for name, field, is_required in fields_of(model):
+        if name == "type":
+            continue
+        optional = "" if is_required else f" (left out: `{json.dumps(field.get('default'))}`)"
+        lines.append(f"| `{name}` | {words(field)}{optional} | {field.get('description', '')} |")
+    return "\n".join(lines)
+
+
+def type_of(model: type[BaseModel]) -> str:
+    """Return the value of a message's `type`."""
+    return str(typing.get_args(model.model_fields["type"].annotation)[0])
+
+
+def render_tables() -> str:
+    """Return the generated part of docs/protocol.md."""
+    blocks = [
+        f"Version {messages.PROTOCOL_VERSION}, from `src/tapreach/server/messages.py`.",
+        "## From the page",
+        *(table(model, type_of(model)) for model in FROM_PAGE),
+        "## From the server",
+        *(table(model, type_of(model)) for model in FROM_SERVER),
+        "## Parts of messages",
+        *(table(model, model.__name__) for model in parts()),
+    ]
+    return "\n\n".join(blocks)
+
+
+def render_page(present: str) -> str:
+    """Return docs/protocol.md with its generated part made anew."""
+    before, _, rest = present.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}\n\n{render_tables()}\n\n{END}{after}"
+
+
+def main() -> None:
+    """Write both files."""
+    JS.write_text(render_js(), encoding="utf-8")
+    PAGE.write_text(render_page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    print(f"wrote {JS.relative_to(ROOT)} and {PAGE.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    main()
