@@ -29,6 +29,8 @@ ROW_OF = {part: row for row, parts in ROWS.items() for part in parts}
 FOR_ALL = {"errors"}  # imports nothing, so even its neighbour in row 0 may import it
 GROUND_TRUTH = "tapreach.drivers.sim.truth"
 MAY_KNOW_TRUTH = {"bench"}
+# The simulated world itself: it makes the truth and sends it, unread, to a host that asked for it.
+TELLS_TRUTH = {f"tapreach.drivers.sim.{name}" for name in ("child", "child_physics", "inline")}
 MAY_NAME_DRIVERS = {"cli", "bench", "drivers"}
 
 # Third-party modules that only these parts may import. "*" would be everybody, and needs no entry.
@@ -111,7 +113,7 @@ def complaint(item: Import) -> str | None:
 
 def truth_complaint(importer: str, item: Import) -> str | None:
     names_truth = item.imported == GROUND_TRUTH or item.imported.startswith(GROUND_TRUTH + ".")
-    if names_truth and importer not in MAY_KNOW_TRUTH:
+    if names_truth and importer not in MAY_KNOW_TRUTH and item.importer not in TELLS_TRUTH:
         return f"{importer} reads the simulation's ground truth"
     return None
 
@@ -130,6 +132,12 @@ def complaints(package: Path) -> list[str]:
 
 def test_imports_of_the_package_go_down_only() -> None:
     assert complaints(PACKAGE) == []
+
+
+def test_nobody_asks_the_simulation_for_the_truth() -> None:
+    outside = [path for path in PACKAGE.rglob("*.py") if not {"bench", "sim"} & set(path.parts)]
+    asks = ("ask_truth", "tells_truth", "truth_json")
+    assert [str(p) for p in outside if any(word in p.read_text(encoding="utf-8") for word in asks)] == []
 
 
 def test_every_part_of_the_package_stands_in_a_row() -> None:
@@ -166,8 +174,8 @@ def test_architecture_page_shows_the_same_rows() -> None:
         ("robot/__init__.py", "from ..server import app", "robot (row 2) imports server (row 5)"),
         ("tasks/locate.py", "from tapreach import estimate_point", "the package's front page"),
         ("server/app.py", "from tapreach.drivers.registry import open_robot", "server names drivers"),
-        ("drivers/sim/driver.py", "from tapreach.drivers.sim import truth", "ground truth"),
-        ("drivers/sim/driver.py", "from .truth import read_truth", "ground truth"),
+        ("drivers/sim/robot.py", "from tapreach.drivers.sim import truth", "ground truth"),
+        ("drivers/sim/robot.py", "from .truth import read_truth", "ground truth"),
         ("estimation/bound.py", "import cv2", "estimation imports cv2"),
         ("estimation/bound.py", "import mujoco", "estimation imports mujoco"),
         ("geometry/ray.py", "import pydantic", "geometry imports pydantic"),
