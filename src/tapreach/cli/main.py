@@ -1,0 +1,34 @@
+"""The command `tapreach`: one file per command group, put together here."""
+
+import sys
+
+import typer
+from rich.console import Console
+
+from tapreach.cli.run import run
+from tapreach.errors import TapreachError
+
+app = typer.Typer(
+    name="tapreach",
+    help="Tap a thing in a robot's live picture: get its 3D position with an honest error bar.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+app.command()(run)
+
+
+@app.callback()
+def tapreach() -> None:
+    """Tap a thing in a robot's live picture: get its 3D position with an honest error bar."""
+
+
+def main() -> None:
+    """Run the command; a known error is one sentence on stderr and exit code 2, Ctrl-C is quiet (130)."""
+    try:
+        app()
+    except TapreachError as error:
+        Console(stderr=True, highlight=False).print(f"tapreach: {error}", markup=False, soft_wrap=True)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        sys.exit(130)
