@@ -95,12 +95,13 @@ function joinControl() {
   on(control, "link", (/** @type {import("./net/link.js").LinkState} */ link) => {
     if (link.stage !== "open") {
       taskPanel.clear();
+      targets.clear();
       situation.learn({ link, welcome: null, state: null });
     } else situation.learn({ link });
   });
   on(control, "welcome", (/** @type {import("./net/messages.js").Welcome} */ welcome) => {
     clock.reset();
-    targets.clear();
+    picture.cameraSize = welcome.camera;
     lease.welcome();
     situation.learn({ welcome });
     void captures.refresh();

@@ -72,7 +72,8 @@ export class Guide {
 
   /** @param {GuideView} view */
   showFields(view) {
-    byId("guide-fields").hidden = view.kind !== "two_tap" || view.step < 3;
+    const movesNow = view.acts.includes("turn") || view.acts.includes("advance");
+    byId("guide-fields").hidden = !movesNow && view.theta_deg === null && view.distance === null;
     const typed = new Set(view.values_typed);
     showField("guide-theta", view.theta_deg, 1, 2, typed.has("theta_deg"));
     showField("guide-distance", view.distance, 100, 1, typed.has("distance"));

@@ -16,7 +16,8 @@ export class StatusBar {
     const { facts } = this.situation;
     this.showLink();
     setText(byId("age"), facts.pictureAgeMs === null ? "–" : duration(facts.pictureAgeMs));
-    byId("fact-age").dataset.tone = facts.isFrozen ? "bad" : "";
+    setText(byId("age-label"), facts.isPaused ? "Paused" : "Picture");
+    byId("fact-age").dataset.tone = facts.isPaused ? "warn" : facts.isFrozen ? "bad" : "";
     setText(byId("rtt"), facts.rttMs === null || !this.situation.isConnected ? "–" : duration(facts.rttMs));
     this.showMotion();
     this.showOdometry();

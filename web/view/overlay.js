@@ -28,7 +28,7 @@ export class Overlay {
     ctx.beginPath();
     ctx.rect(placement.left, placement.top, placement.width, placement.height);
     ctx.clip();
-    drawCentreLine(ctx, placement, frame.width);
+    drawCentreLine(ctx, placement);
     const markers = frame.meta?.markers ?? [];
     for (const marker of markers) this.drawMarker(ctx, placement, marker);
     for (const target of this.unmarked(frame, markers)) {
@@ -60,9 +60,9 @@ export class Overlay {
 /** @param {TargetView} target */
 const colour = (target) => (target.source === "floor" ? GUESS : ACCENT);
 
-/** @param {CanvasRenderingContext2D} ctx @param {Placement} placement @param {number} width */
-function drawCentreLine(ctx, placement, width) {
-  const { x } = boxFromPicture(placement, (width - 1) / 2, 0);
+/** @param {CanvasRenderingContext2D} ctx @param {Placement} placement */
+function drawCentreLine(ctx, placement) {
+  const x = placement.left + placement.width / 2;
   for (const [lineWidth, style] of /** @type {[number, string][]} */ ([[3, "rgb(0 0 0 / 25%)"], [1, SOFT]])) {
     ctx.lineWidth = lineWidth;
     ctx.strokeStyle = style;

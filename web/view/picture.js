@@ -19,6 +19,8 @@ export class Picture extends EventTarget {
     this.ctx = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
     /** @type {Painter[]} */
     this.painters = [];
+    /** @type {{width: number, height: number} | null} what pixels are counted in: a narrow link sends fewer */
+    this.cameraSize = null;
     /** @type {Frame | null} the newest that waits for the decoder */
     this.awaiting = null;
     this.isDecoding = false;
@@ -97,8 +99,8 @@ export class Picture extends EventTarget {
   /** @returns {Placement | null} null while nothing is painted */
   placement() {
     if (!this.painted) return null;
-    const { bitmap } = this.painted;
-    return placePicture(this.canvas.clientWidth, this.canvas.clientHeight, bitmap.width, bitmap.height);
+    const { width, height } = this.cameraSize ?? this.painted.bitmap;
+    return placePicture(this.canvas.clientWidth, this.canvas.clientHeight, width, height);
   }
 
   /**

@@ -34,8 +34,9 @@ export class Playback extends EventTarget {
 
   /** How far back one can scrub [ms]. */
   get spanMs() {
-    const { still } = this;
-    return still?.length ? still[still.length - 1].capturedMs - still[0].capturedMs : 0;
+    const oldest = this.still?.at(0);
+    const newest = this.still?.at(-1);
+    return oldest && newest ? newest.capturedMs - oldest.capturedMs : 0;
   }
 
   /** @param {Frame} frame */
