@@ -1,4 +1,4 @@
-"""Bodies of revolution as OBJ, with texture coordinates and normals. Unit size: radius 1, height 1, base at 0."""
+"""Bodies of revolution as OBJ with texture coordinates and normals: radius 1, height 1, on their foot."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,29 +10,30 @@ Profile = list[tuple[float, float, float]]
 """Points (radius, height, v) from the bottom centre to the top; v is the row of the texture, 0 below."""
 
 
-def _sphere(rings: int = 16) -> Profile:
+def _sphere(rings: int = 12) -> Profile:
     angles = np.linspace(-np.pi / 2, np.pi / 2, rings + 1)
     return [(float(np.cos(a)), float(0.5 + 0.5 * np.sin(a)), float((a / np.pi) + 0.5)) for a in angles]
 
 
 MESHES: dict[str, Profile] = {
     "can": [
-        (0, 0.012, 0.01), (0.72, 0.012, 0.01), (0.78, 0, 0.01), (0.84, 0, 0.02), (1, 0.05, 0.05), (1, 0.93, 0.95),
-        (0.87, 0.985, 0.97), (0.87, 1, 0.98), (0.82, 1, 0.98), (0.80, 0.975, 0.99), (0, 0.975, 0.99),
+        (0, 0.012, 0.01), (0.72, 0.012, 0.01), (0.78, 0, 0.01), (0.84, 0, 0.02), (1, 0.05, 0.05),
+        (1, 0.93, 0.95), (0.87, 0.985, 0.97), (0.87, 1, 0.98), (0.82, 1, 0.98), (0.80, 0.975, 0.99),
+        (0, 0.975, 0.99),
     ],
     "bottle": [
-        (0, 0.01, 0.01), (0.85, 0, 0.01), (1, 0.03, 0.04), (1, 0.60, 0.66), (0.96, 0.66, 0.70), (0.70, 0.76, 0.78),
-        (0.42, 0.84, 0.86), (0.36, 0.90, 0.91), (0.36, 0.915, 0.915), (0.44, 0.92, 0.925), (0.44, 0.995, 0.99),
-        (0.40, 1, 0.99), (0, 1, 0.99),
+        (0, 0.01, 0.01), (0.85, 0, 0.01), (1, 0.03, 0.04), (1, 0.60, 0.66), (0.96, 0.66, 0.70),
+        (0.70, 0.76, 0.78), (0.42, 0.84, 0.86), (0.36, 0.90, 0.91), (0.36, 0.915, 0.915), (0.44, 0.92, 0.925),
+        (0.44, 0.995, 0.99), (0.40, 1, 0.99), (0, 1, 0.99),
     ],
     "cup": [
-        (0, 0, 0.01), (0.74, 0, 0.01), (0.80, 0.03, 0.03), (1, 0.97, 0.44), (0.985, 1, 0.46), (0.95, 0.985, 0.50),
-        (0.74, 0.08, 0.60), (0, 0.06, 0.62),
+        (0, 0, 0.01), (0.74, 0, 0.01), (0.80, 0.03, 0.03), (1, 0.97, 0.44), (0.985, 1, 0.46),
+        (0.95, 0.985, 0.50), (0.74, 0.08, 0.60), (0, 0.06, 0.62),
     ],
     "ball": _sphere(),
 }  # fmt: skip
 
-SEGMENTS = 40
+SEGMENTS = 28
 
 
 def write_obj(path: Path, profile: Profile) -> None:

@@ -1,4 +1,4 @@
-"""Textures of floors, walls, furniture and things outside. Each returns pixels of shape (rows, columns, 3)."""
+"""Textures of floors, walls, furniture and things outside. Pixels are (rows, columns, 3)."""
 
 from collections.abc import Callable
 

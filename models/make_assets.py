@@ -1,7 +1,7 @@
 """Make every texture and mesh of the simulation, the same each time: `python models/make_assets.py [FOLDER]`.
 
-Everything is drawn here, so there is no licence to carry. The results are kept in `models/assets`; a test makes
-them anew and compares. Needs numpy and Pillow.
+Everything is drawn here, so there is no licence to carry. The results are kept in `models/assets`; a
+test makes them anew and compares. Needs numpy and Pillow.
 """
 
 import sys

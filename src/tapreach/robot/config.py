@@ -105,6 +105,7 @@ class ArmSection(Section):
     """The paper's arm: A turns it, B and C move it in a plane, a linkage keeps it level, D is the claw."""
 
     shoulder_forward: Finite = Field(description="axis of B ahead of the wheel axis [m]; on the axis of A")
+    shoulder_left: Finite = Field(0.0, description="axis of A left of the middle [m]")
     shoulder_up: Positive = Field(description="axis of B above the floor [m]")
     upper_length: Positive = Field(description="axis of B to axis of C [m]")
     fore_length: Positive = Field(description="axis of C to the wrist [m]")

@@ -45,8 +45,8 @@ class WheelControl:
 class DriveBoard:
     """Twist in, motor voltages out, with limits and a deadman of its own.
 
-    The wheels stop when no command came for 150 ms; then they move again only after a zero command. Accelerations
-    are limited here, since a step in speed would only make the wheels spin.
+    The wheels stop when no command came for 150 ms; then they move again only after a zero command.
+    Accelerations are limited here, since a step in speed would only make the wheels spin.
     """
 
     def __init__(self, config: BaseSection) -> None:

@@ -7,7 +7,14 @@ import numpy as np
 
 from tapreach.drivers.sim.build_materials import Palette
 from tapreach.drivers.sim.build_objects import add_object
-from tapreach.drivers.sim.build_room import WALL_TEXTURE, add_furniture, add_hanging, add_light, add_room, add_sun_patches
+from tapreach.drivers.sim.build_room import (
+    WALL_TEXTURE,
+    add_furniture,
+    add_hanging,
+    add_light,
+    add_room,
+    add_sun_patches,
+)
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.scene import Scene
 from tapreach.errors import ConfigError

@@ -17,7 +17,7 @@ ROLLING = (0.6, 0.003, 0.0006)
 
 @dataclass(frozen=True)
 class Solid:
-    """One collision solid: MuJoCo's type and size, height of its middle above the body's, share of the mass."""
+    """One collision solid: MuJoCo's type and size, height above the body's middle, share of mass."""
 
     shape: mujoco.mjtGeom
     size: tuple[float, float, float]

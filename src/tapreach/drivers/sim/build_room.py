@@ -21,7 +21,7 @@ _SHAPES = {"box": GEOM.mjGEOM_BOX, "cylinder": GEOM.mjGEOM_CYLINDER, "ellipsoid"
 
 @dataclass(frozen=True)
 class Wall:
-    """One wall: middle of its foot [m], length [m], direction along it and into the room (unit, on the floor)."""
+    """One wall: middle of its foot and length [m]; unit directions along it and into the room."""
 
     foot: tuple[float, float]
     length: float
@@ -111,8 +111,10 @@ def add_hanging(spec: mujoco.MjSpec, palette: Palette, room: Room, index: int, h
         )
 
 
-def add_sun_patches(spec: mujoco.MjSpec, palette: Palette, room: Room, light: Light, hanging: Hanging) -> None:
-    """Lay the sunlight that falls through a window's four panes on the floor, where the sun stands outside of it."""
+def add_sun_patches(
+    spec: mujoco.MjSpec, palette: Palette, room: Room, light: Light, hanging: Hanging
+) -> None:
+    """Lay the sunlight of a window's four panes on the floor, where the sun stands outside of it."""
     wall = walls_of(room)[hanging.wall]
     azimuth, elevation = math.radians(light.azimuth_deg), math.radians(light.elevation_deg)
     entering = -(math.cos(azimuth) * wall.inward[0] + math.sin(azimuth) * wall.inward[1])
@@ -130,9 +132,7 @@ def add_sun_patches(spec: mujoco.MjSpec, palette: Palette, room: Room, light: Li
         _add_patch(spec, palette, f"sun_{hanging.wall}_{hanging.along:g}_{pane}", corners)
 
 
-def _add_patch(
-    spec: mujoco.MjSpec, palette: Palette, name: str, corners: list[tuple[float, float]]
-) -> None:
+def _add_patch(spec: mujoco.MjSpec, palette: Palette, name: str, corners: list[tuple[float, float]]) -> None:
     """Add a thin bright see-through plate on the floor."""
     points = [(x, y, z) for z in (0.003, 0.0035) for x, y in corners]
     spec.add_mesh(name=name, uservert=np.array(points).flatten())
@@ -194,10 +194,15 @@ def add_light(spec: mujoco.MjSpec, light: Light, is_outside: bool) -> None:
     )
     tint = np.array([1.0 + 0.12 * light.warmth, 1.0, 1.0 - 0.22 * light.warmth])
     spec.worldbody.add_light(
-        name="sun", type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL, pos=0.6 * np.array([1, 0, 0]) + 2.0 * towards,
-        dir=-towards, diffuse=np.clip(light.sun * tint, 0, 1), specular=np.full(3, 0.25 * light.sun),
-        ambient=np.zeros(3), castshadow=light.shadows,
-    )  # fmt: skip
+        name="sun",
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+        pos=np.array([0.6, 0.0, 0.0]) + 2.0 * towards,
+        dir=-towards,
+        diffuse=np.clip(light.sun * tint, 0, 1),
+        specular=np.full(3, 0.25 * light.sun),
+        ambient=np.zeros(3),
+        castshadow=light.shadows,
+    )
     head = spec.visual.headlight
     head.ambient = np.full(3, light.ambient)
     head.diffuse = np.full(3, 0.3 * light.ambient)

@@ -1,7 +1,8 @@
 """The simulator's process: `python -m tapreach.drivers.sim.child CONTROL_FD FRAMES_FD`.
 
-Physics runs in a thread of its own in real time; pictures are drawn in the main thread, where the OpenGL context
-lives. The process ends when its host goes: the kernel tells it (PR_SET_PDEATHSIG), and so does end of file.
+Physics runs in a thread of its own in real time; pictures are drawn in the main thread, where the OpenGL
+context lives. The process ends when its host goes: the kernel tells it (PR_SET_PDEATHSIG), and so does end of
+file.
 """
 
 import ctypes

@@ -19,7 +19,7 @@ class FrameSender:
         self._left = memoryview(b"")
 
     def is_free(self) -> bool:
-        """Push on what is left and return whether all of it is gone. Raises ConnectionError when nobody reads."""
+        """Push on and return whether all of it is gone. Raises ConnectionError when nobody reads."""
         while self._left:
             try:
                 self._left = self._left[self._socket.send(self._left) :]

@@ -7,6 +7,6 @@ from tapreach.robot.config import RobotDescription
 
 
 def make_sim_robot(description: RobotDescription, clock: Clock) -> SimRobot:
-    """Return the robot in the scene and with the faults of the file's table [simulation]. Raises ConfigError."""
+    """Return the robot in the scene and with the faults of the table [simulation]. Raises ConfigError."""
     scene, faults = resolve_scene(description)
     return SimRobot(description, scene, clock, faults)

@@ -1,11 +1,12 @@
 """An off-screen OpenGL context without a window: EGL, else OSMesa, through ctypes (no PyOpenGL, no X).
 
-Order: system EGL (`libegl1 libgl1-mesa-dri`), system OSMesa (`libosmesa6`), and the OSMesa inside the PyPI wheel
-`lavavu-osmesa`. A context belongs to the thread that made it.
+Order: system EGL (`libegl1 libgl1-mesa-dri`), system OSMesa (`libosmesa6`), and the OSMesa inside the PyPI
+wheel `lavavu-osmesa`. A context belongs to the thread that made it.
 """
 
 import ctypes
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -32,10 +33,14 @@ class GLContext(Protocol):
 def create_context(choice: str = "auto") -> GLContext:
     """Make a context and make it current in this thread.
 
-    choice: "auto", or one of "egl", "osmesa", "osmesa-wheel". Raises SetupError with the install lines and what
-    each of the tried ways said.
+    choice: "auto", or one of "egl", "osmesa", "osmesa-wheel". Raises SetupError with the install lines and
+    what each of the tried ways said.
     """
-    ways = {"egl": EglContext, "osmesa": SystemOSMesa, "osmesa-wheel": WheelOSMesa}
+    ways: dict[str, Callable[[], GLContext]] = {
+        "egl": EglContext,
+        "osmesa": SystemOSMesa,
+        "osmesa-wheel": WheelOSMesa,
+    }
     tried = []
     for name, way in ways.items():
         if choice not in ("auto", name):

@@ -20,7 +20,7 @@ class TickOdometry:
         self._recent: deque[tuple[int, float, float]] = deque()
 
     def update(self, telemetry: Telemetry) -> Odometry:
-        """Return the odometry after one more telemetry; speeds are means over 100 ms, since ticks are whole."""
+        """Return the odometry now; speeds are means over 100 ms, since ticks are whole."""
         before_ns = self._wheels.reading.captured_ns
         reading = self._wheels.update(telemetry.left_ticks, telemetry.right_ticks, telemetry.captured_ns)
         if before_ns:

@@ -1,4 +1,4 @@
-"""The simulated robot without a process: stepped by the clock it is given, so faster than real time in tests."""
+"""The simulated robot without a process, stepped by the clock it is given: fast in tests."""
 
 import asyncio
 from collections import deque

@@ -1,7 +1,7 @@
 """What host and simulator say to each other: plain values, one JSON array per packet, defined here only.
 
-Two socket pairs join them. The control pair (SOCK_SEQPACKET: one packet, one message) carries everything below;
-the frame pair (SOCK_STREAM) carries pictures, each a header and a JPEG.
+Two socket pairs join them. The control pair (SOCK_SEQPACKET: one packet, one message) carries everything
+below; the frame pair (SOCK_STREAM) carries pictures, each a header and a JPEG.
 """
 
 import json
@@ -48,7 +48,7 @@ class MoveArm:
 
 @dataclass(frozen=True, slots=True)
 class AskTruth:
-    """Where everything truly was at a time [ns]; 0 is now. Answered only when the host asked for it at setup."""
+    """Where everything truly was at a time [ns], 0 for now. Answered only when setup asked for it."""
 
     at_ns: int
 

@@ -28,7 +28,7 @@ class Renderer:
         self.shadows = True
 
     def render(self, snapshot: NDArray[np.float64], camera: str | mujoco.MjvCamera = "front") -> Picture:
-        """Return the picture (height, width, 3), RGB, of `World.snapshot()`; a view, good until the next call."""
+        """Return the RGB picture (height, width, 3) of `World.snapshot()`, good until the next call."""
         self._data.qpos[:] = snapshot
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_camlight(self._model, self._data)

@@ -50,8 +50,8 @@ class SimRobot:
         self._description = description
         chosen = faults if faults is not None else scene.faults
         self._setup = Setup(
-            scene.model_dump_json(exclude_unset=True), description.model_dump_json(), chosen.model_dump_json(),
-            seed, opengl, tells_truth,
+            scene.model_dump_json(exclude_unset=True), description.model_dump_json(),
+            chosen.model_dump_json(), seed, opengl, tells_truth,
         )  # fmt: skip
         self.base = HostBase(description.base, self._send)
         self.arm = HostArm(description.arm, self._send)
@@ -87,7 +87,7 @@ class SimRobot:
     async def connect(self) -> None:
         """Start the process and return when it runs.
 
-        Raises SetupError when nothing can draw, ConfigError for what it cannot simulate, DriverError otherwise.
+        Raises SetupError when nothing can draw, ConfigError for what it cannot simulate, or DriverError.
         """
         loop = asyncio.get_running_loop()
         self._started = loop.create_future()

@@ -17,7 +17,7 @@ Corners = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Solid:
-    """An upright prism: convex outline on the floor, (n, 2) counter-clockwise [m], and its height interval."""
+    """An upright prism [m]: convex outline (n, 2), counter-clockwise, and its height interval."""
 
     outline: Corners
     height: Interval

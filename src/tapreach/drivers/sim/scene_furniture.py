@@ -15,8 +15,8 @@ Vector = tuple[float, float, float]
 class Part:
     """One solid of a piece of furniture, in the piece's own frame (origin on the floor, z up) [m].
 
-    shape: "box" or "ellipsoid" (half sizes), "cylinder" (radius, half height, unused). paint: a texture name, or
-    "#rrggbb". is_solid: things collide with it.
+    shape: "box" or "ellipsoid" (half sizes), "cylinder" (radius, half height, unused). paint: a texture name,
+    or "#rrggbb". is_solid: things collide with it.
     """
 
     shape: Literal["box", "cylinder", "ellipsoid"]

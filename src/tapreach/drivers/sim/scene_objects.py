@@ -20,7 +20,7 @@ class Entry(BaseModel):
 
 
 class SceneObject(Entry):
-    """What all objects share. Position on the floor in the world frame: x ahead of the robot's start, y left."""
+    """What all objects share. Position on the floor, world frame: x ahead of the robot's start, y left."""
 
     name: str = Field("", description="shown in benches; kind and number when left out")
     position: tuple[Place, Place]
@@ -53,8 +53,8 @@ class SceneObject(Entry):
     def _can_be_gripped(self) -> "SceneObject":
         if self.graspable and self.width > CLAW_OPENING - 0.004:
             raise ValueError(
-                f"is {self.width * 1000:.0f} mm wide, the claw opens to {CLAW_OPENING * 1000:.0f} mm and needs "
-                "4 mm to spare: make it smaller or set graspable = false"
+                f"is {self.width * 1000:.0f} mm wide, the claw opens to {CLAW_OPENING * 1000:.0f} mm and "
+                "needs 4 mm to spare: make it smaller or set graspable = false"
             )
         if self.graspable and self.weight > LIFT_MASS:
             raise ValueError(

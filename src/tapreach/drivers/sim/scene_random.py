@@ -89,7 +89,8 @@ def _furniture(rng: np.random.Generator) -> Callable[[], Table]:
 
 def _red_can(rng: np.random.Generator) -> Callable[[], Table]:
     return lambda: {
-        "kind": "can", "name": "red can", "label": "cola", "position": (rng.uniform(0.6, 1.5), rng.uniform(-0.25, 0.25))
+        "kind": "can", "name": "red can", "label": "cola",
+        "position": (rng.uniform(0.6, 1.5), rng.uniform(-0.25, 0.25)),
     }  # fmt: skip
 
 
@@ -107,12 +108,13 @@ def _thing(rng: np.random.Generator) -> Callable[[], Table]:
 
 def _looks(rng: np.random.Generator, kind: str) -> Table:
     if kind == "box":
-        size = tuple(rng.uniform(0.035, 0.065, 2)) + (rng.uniform(0.05, 0.12),)
+        size = (*tuple(rng.uniform(0.035, 0.065, 2)), rng.uniform(0.05, 0.12))
         return {"kind": kind, "label": _one_of(rng, ["tea", "mint", "oats"]), "size": size}
     if kind == "parcel":
         size = tuple(rng.uniform(0.16, 0.34, 3))
         return {
-            "kind": "box", "label": _one_of(rng, ["crate", "cardboard"]), "size": size, "mass": 1.5, "graspable": False
+            "kind": "box", "label": _one_of(rng, ["crate", "cardboard"]), "size": size, "mass": 1.5,
+            "graspable": False,
         }  # fmt: skip
     if kind == "ball":
         return {"kind": kind, "label": _one_of(rng, ["beach", "football"])}

@@ -34,7 +34,7 @@ class BoardState:
 
 
 class World:
-    """Robot and room. The same scene, description, faults and seed with the same commands give the same motion."""
+    """Robot and room. Equal scene, description, faults, seed and commands give equal motion."""
 
     def __init__(self, scene: Scene, description: RobotDescription, faults: SimFaults, seed: int = 0) -> None:
         self.description = description
@@ -75,7 +75,7 @@ class World:
         self._board.command(twist)
 
     def move_arm(self, target: ArmPose) -> None:
-        """Send the servos to `target` at their own speed. Limits are the host's task; the joints have stops."""
+        """Send the servos to `target` at their speed. Limits are the host's task; the joints have stops."""
         for servo, angle in zip(self._servos, _servo_angles(target), strict=True):
             servo.target = angle
 
@@ -101,7 +101,7 @@ class World:
 
     def snapshot(self) -> NDArray[np.float64]:
         """Return the state that a picture needs, as one vector: cheap to copy to another thread."""
-        return self.data.qpos.copy()
+        return np.array(self.data.qpos)
 
     def _settle(self) -> None:
         """Put the arm in its stowed pose and let everything come to rest on the floor."""
