@@ -62,7 +62,7 @@ class ControlLoop:
                 due_ns += PERIOD_NS
                 if self._clock.now_ns() > due_ns:
                     self.overruns += 1
-                    due_ns = self._clock.now_ns()
+                    due_ns = self._clock.now_ns() + PERIOD_NS
                 await self._clock.sleep_until(due_ns)
         finally:
             self.stop("the control loop has ended")

@@ -233,8 +233,9 @@ class FakeRobot:
 
     def lose(self, reason: str) -> None:
         """Lose the link, as when a cable is pulled: the wheels stop, commands raise LinkLost."""
-        self._base.halt()
         if self._health.status is not LinkStatus.LOST:
+            self._base.halt()
+            self._base.step()
             self._set_health(Health(LinkStatus.LOST, reason))
 
     def _set_health(self, health: Health) -> None:
