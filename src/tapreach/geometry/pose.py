@@ -73,7 +73,25 @@ def camera_mount(
 
 def skew(vectors: FloatArray) -> FloatArray:
     """Return the matrices (..., 3, 3) of the cross product with vectors (..., 3)."""
-    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
-    zero = np.zeros_like(x)
-    rows = [np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))]
-    return np.stack(rows, axis=-2)
+    matrices = np.zeros((*vectors.shape, 3))
+    matrices[..., 2, 1], matrices[..., 0, 2], matrices[..., 1, 0] = (
+        vectors[..., 0],
+        vectors[..., 1],
+        vectors[..., 2],
+    )
+    matrices -= np.swapaxes(matrices, -1, -2)
+    return matrices
+
+
+def right_jacobians(rotation_vectors: FloatArray) -> FloatArray:
+    """Return (n, 3, 3) J with exp(r + dr) = exp(r) exp(J dr) to first order, for rotation vectors (n, 3).
+
+    Source: Solà, Deray and Atchuthan, "A micro Lie theory for state estimation in robotics", eq. 143.
+    """
+    cross = skew(rotation_vectors)
+    angle = np.linalg.norm(rotation_vectors, axis=1)[:, None, None]
+    safe = np.where(angle < 0.02, 1.0, angle)
+    # Series where the closed form would divide by nearly zero.
+    first = np.where(angle < 0.02, 0.5 - angle**2 / 24.0, (1.0 - np.cos(safe)) / safe**2)
+    second = np.where(angle < 0.02, 1.0 / 6.0 - angle**2 / 120.0, (safe - np.sin(safe)) / safe**3)
+    return np.asarray(np.eye(3) - first * cross + second * (cross @ cross))

@@ -1,0 +1,128 @@
+"""The estimator: observations and what is known of the motion, to a point with an honest region.
+
+It finds the most probable target together with the errors of the poses, instead of trusting the poses; this
+is what keeps the reported region honest (docs/estimation.md).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tapreach.errors import InputError
+from tapreach.estimation.advice import advice_to_halve
+from tapreach.estimation.depth_knowledge import DepthKnowledge, depth_knowledge
+from tapreach.estimation.map_solver import Solution
+from tapreach.estimation.motion_prior import Motion, MountNoise, camera_errors
+from tapreach.estimation.observation import Observation
+from tapreach.estimation.outlier import solve_without_outliers
+from tapreach.estimation.point_estimate import PointEstimate, Status
+from tapreach.estimation.point_in_frames import point_in_last_base, point_in_world
+from tapreach.estimation.range_posterior import RangePrior
+from tapreach.estimation.verdict import reason_without_baseline, verdict
+from tapreach.estimation.view_model import ViewModel, view_model
+from tapreach.geometry.finite import FloatArray
+
+
+def estimate_point(
+    observations: Sequence[Observation],
+    motion: Motion = None,
+    *,
+    mount_noise: MountNoise | None = None,
+    range_prior: RangePrior | None = None,
+    with_advice: bool = True,
+) -> PointEstimate:
+    """Estimate where the target of the observations is.
+
+    observations: any number, in the order of time; one alone is degenerate, as its depth is unknown.
+    motion: what is known of the poses world_from_base: None for exact, OdometryNoise for poses along a drive,
+    or their covariance [m², m·rad, rad²] in tangent order (translation, rotation), right perturbation: joint
+    (6n, 6n) or independent (n, 6, 6). mount_noise: of the camera on the base, one error shared by all views.
+    range_prior: ranges that are possible at all. with_advice: look for the next move too (some ms).
+
+    Never fails on geometry: a singular or contradictory set of views is a result with its status and reason.
+    Raises InputError where there is no observation or a covariance cannot be one.
+    """
+    if not observations:
+        raise InputError("there are no observations; give at least one, and two or more for a depth")
+    model = view_model(observations, camera_errors(observations, motion, mount_noise))
+    reason = reason_without_baseline(model)
+    if reason is not None:
+        return _unknown(Status.DEGENERATE, reason, model)
+    solved = solve_without_outliers(model)
+    if solved is None:
+        return _unknown(Status.INCONSISTENT, "no point lies in front of all the cameras", model)
+    model, solution = solved
+    depth = depth_knowledge(model, solution, range_prior or RangePrior())
+    advice = _advice(observations, motion, mount_noise, solution, depth) if with_advice else ""
+    return _answer(observations, model, solution, depth, advice)
+
+
+def _answer(
+    observations: Sequence[Observation],
+    model: ViewModel,
+    solution: Solution,
+    depth: DepthKnowledge,
+    advice: str,
+) -> PointEstimate:
+    status, reason = verdict(model, solution, depth)
+    rejected = tuple(int(i) for i in np.flatnonzero(~model.is_used))
+    residuals_px = model.residuals_px(model.predict(solution.x))
+    if status is Status.DEGENERATE:
+        return _unknown(status, reason, model, advice, residuals_px)
+    covariance = np.asarray(np.linalg.inv(solution.information), dtype=np.float64)
+    is_determined = status is Status.DETERMINED
+    world = point_in_world(model, observations[0], solution.x, covariance) if is_determined else None
+    base = point_in_last_base(model, observations[-1], solution.x, covariance) if is_determined else None
+    return PointEstimate(
+        status=status,
+        reason=reason,
+        advice=advice,
+        bearing=solution.x[:2].copy(),
+        inverse_depth=depth.inverse_depth,
+        bearing_inverse_depth_cov=covariance[:3, :3].copy(),
+        relative_sd=depth.relative_sd,
+        point_in_world=world.point if world is not None else None,
+        point_cov_in_world=world.covariance if world is not None else None,
+        point_in_base=base.point if base is not None else None,
+        point_cov_in_base=base.covariance if base is not None else None,
+        range=depth.slant / depth.inverse_depth if is_determined else None,
+        range_interval_95=None if status is Status.BEHIND else depth.range_interval(),
+        residuals_px=residuals_px,
+        rejected_views=rejected,
+    )
+
+
+def _unknown(
+    status: Status, reason: str, model: ViewModel, advice: str = "", residuals_px: FloatArray | None = None
+) -> PointEstimate:
+    """Return a result that knows no depth."""
+    return PointEstimate(
+        status=status,
+        reason=reason,
+        advice=advice or "drive so that the target moves sideways in the picture",
+        bearing=None,
+        inverse_depth=None,
+        bearing_inverse_depth_cov=None,
+        relative_sd=float("inf"),
+        point_in_world=None,
+        point_cov_in_world=None,
+        point_in_base=None,
+        point_cov_in_base=None,
+        range=None,
+        range_interval_95=None,
+        residuals_px=residuals_px if residuals_px is not None else np.zeros((model.views, 2)),
+        rejected_views=tuple(int(i) for i in np.flatnonzero(~model.is_used)),
+    )
+
+
+def _advice(
+    observations: Sequence[Observation],
+    motion: Motion,
+    mount_noise: MountNoise | None,
+    solution: Solution,
+    depth: DepthKnowledge,
+) -> str:
+    likely_depth = depth.likely_range() / depth.slant
+    in_camera = likely_depth * np.array([*solution.x[:2], 1.0])
+    point = np.asarray(observations[0].world_from_camera.apply(in_camera))
+    return advice_to_halve(observations, motion, mount_noise, point, depth.sd * likely_depth)

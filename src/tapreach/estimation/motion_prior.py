@@ -1,0 +1,104 @@
+"""What is known of the poses' errors: a linear map from independent unit normals (docs/estimation.md, 3)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial.transform import RigidTransform
+
+from tapreach.errors import InputError
+from tapreach.estimation.observation import Observation
+from tapreach.estimation.odometry_noise import OdometryNoise, covariance_root, pose_errors
+from tapreach.geometry.finite import FloatArray, not_negative
+from tapreach.geometry.gaussian import require_covariance
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.geometry.pose import skew
+
+Motion = OdometryNoise | npt.ArrayLike | None
+_PLANAR_ROWS = [0, 1, 5]
+
+
+@dataclass(frozen=True)
+class MountNoise:
+    """One sigma of the camera's mount, shared by all views: each coordinate [m] and each angle [rad]."""
+
+    position_sigma: float = 0.0
+    angle_sigma: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("position_sigma", "angle_sigma"):
+            object.__setattr__(self, name, not_negative(name, getattr(self, name)))
+
+
+@dataclass(frozen=True)
+class CameraErrors:
+    """Errors of the cameras' poses per independent unit normal: right perturbation, (translation, rotation).
+
+    by_normal: (n, 6, k), the whole error. by_mount: (6, k), the part that is the mount's.
+    """
+
+    by_normal: FloatArray
+    by_mount: FloatArray
+
+
+def camera_errors(
+    observations: Sequence[Observation], motion: Motion, mount_noise: MountNoise | None
+) -> CameraErrors:
+    """Return equation (6): what one sigma of every independent cause does to every camera.
+
+    motion: None for exact poses; OdometryNoise for poses along a drive in the order given; or the
+    covariance of the base poses, joint (6n, 6n) or of independent poses (n, 6, 6).
+    """
+    of_bases = _base_errors(observations, motion)
+    adjoints = np.stack([_inverse_adjoint(view.base_from_camera) for view in observations])
+    of_cameras = adjoints @ of_bases
+    noise = mount_noise if mount_noise is not None else MountNoise()
+    sigmas = np.repeat([noise.position_sigma, noise.angle_sigma], 3)
+    of_mount = np.diag(sigmas)[:, sigmas > 0.0]
+    spread = np.broadcast_to(of_mount, (len(observations), *of_mount.shape))
+    by_mount = np.concatenate([np.zeros((6, of_cameras.shape[2])), of_mount], axis=1)
+    return CameraErrors(np.concatenate([of_cameras, spread], axis=2), by_mount)
+
+
+def _base_errors(observations: Sequence[Observation], motion: Motion) -> FloatArray:
+    count = len(observations)
+    if motion is None:
+        return np.zeros((count, 6, 0))
+    if isinstance(motion, OdometryNoise):
+        return _odometry_errors(observations, motion)
+    return _covariance_errors(np.asarray(motion, dtype=np.float64), count)
+
+
+def _odometry_errors(observations: Sequence[Observation], noise: OdometryNoise) -> FloatArray:
+    start_from_world = observations[0].world_from_base.inv()
+    poses = [PlanarPose.from_rigid(start_from_world * view.world_from_base) for view in observations]
+    planar = pose_errors(poses, noise)
+    used = np.any(planar != 0.0, axis=(0, 1))
+    errors = np.zeros((len(poses), 6, int(used.sum())))
+    errors[:, _PLANAR_ROWS] = planar[:, :, used]
+    return errors
+
+
+def _covariance_errors(covariance: FloatArray, count: int) -> FloatArray:
+    if covariance.shape == (count, 6, 6):
+        joint = np.zeros((6 * count, 6 * count))
+        for i, block in enumerate(covariance):
+            joint[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = block
+        covariance = joint
+    if covariance.shape != (6 * count, 6 * count):
+        raise InputError(
+            f"pose covariance has shape {covariance.shape}; for {count} views it must be "
+            f"({6 * count}, {6 * count}) for joint or ({count}, 6, 6) for independent errors"
+        )
+    root = covariance_root(require_covariance("pose covariance", covariance, 6 * count))
+    return root[:, np.any(root != 0.0, axis=0)].reshape(count, 6, -1)
+
+
+def _inverse_adjoint(base_from_camera: RigidTransform) -> FloatArray:
+    """Return (6, 6): a base's small motion as the camera on it makes it."""
+    rotation = base_from_camera.rotation.as_matrix()
+    adjoint = np.zeros((6, 6))
+    adjoint[:3, :3] = adjoint[3:, 3:] = rotation.T
+    adjoint[:3, 3:] = -rotation.T @ skew(np.asarray(base_from_camera.translation))
+    return adjoint

@@ -1,0 +1,38 @@
+"""One sighting of the target: a pixel, the camera that saw it, and where that camera was."""
+
+from dataclasses import dataclass
+
+from scipy.spatial.transform import RigidTransform
+
+from tapreach.errors import InputError
+from tapreach.geometry.camera import Camera
+from tapreach.geometry.finite import positive
+from tapreach.geometry.pixel import Pixel, require_inside
+
+
+@dataclass(frozen=True)
+class Observation:
+    """The target was seen at `pixel`, one sigma `pixel_sigma` [px] in u and in v, by `camera`.
+
+    world_from_base: where the base was, by odometry or otherwise. base_from_camera: the mount; identity
+    where the poses given are those of the camera. Raises InputError for a pixel outside the picture and a
+    sigma that is not above zero.
+    """
+
+    pixel: Pixel
+    pixel_sigma: float
+    camera: Camera
+    world_from_base: RigidTransform
+    base_from_camera: RigidTransform
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "pixel_sigma", positive("pixel_sigma", self.pixel_sigma))
+        require_inside(self.pixel, self.camera.size)
+        for name in ("world_from_base", "base_from_camera"):
+            if not isinstance(getattr(self, name), RigidTransform):
+                raise InputError(f"{name} is a {type(getattr(self, name)).__name__}; give a RigidTransform")
+
+    @property
+    def world_from_camera(self) -> RigidTransform:
+        """Pose of the camera in the world."""
+        return self.world_from_base * self.base_from_camera

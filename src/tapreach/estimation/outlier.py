@@ -1,0 +1,54 @@
+"""Views that do not fit the others: found by how much the cost falls without them (docs/estimation.md, 8)."""
+
+import numpy as np
+from scipy.stats import chi2
+
+from tapreach.estimation.map_solver import Solution, solve
+from tapreach.estimation.view_model import ViewModel
+from tapreach.geometry.finite import FloatArray
+
+_FALSE_ALARMS = 0.01
+_FEWEST_TO_BLAME = 4  # of three views, any two agree well enough without the third
+_TRIED = 3
+_HOPE = 0.5  # share of the limit that the linear prediction must promise before a view is tried without
+
+
+def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | None:
+    """Return the model with unfitting views left out, one by one, and its solution.
+
+    A view is left out where the cost falls beyond chance without it: the best of n is tested at 1 % false
+    alarms in all. Three are always kept. None where no depth puts the target before all cameras.
+    """
+    solution = solve(model)
+    while solution is not None and int(model.is_used.sum()) >= _FEWEST_TO_BLAME:
+        limit = float(chi2.ppf(1.0 - _FALSE_ALARMS / int(model.is_used.sum()), 2))
+        better = _best_without_one(model, solution, _HOPE * limit)
+        if better is None or solution.cost - better[1].cost < limit:
+            break
+        model, solution = better
+    return None if solution is None else (model, solution)
+
+
+def _best_without_one(
+    model: ViewModel, solution: Solution, hoped: float
+) -> tuple[ViewModel, Solution] | None:
+    expected = _expected_gains(model, solution)
+    if float(expected.max()) < hoped:
+        return None
+    best: tuple[ViewModel, Solution] | None = None
+    for view in np.argsort(expected)[::-1][:_TRIED]:
+        reduced = model.without(int(view))
+        found = solve(reduced)
+        if found is not None and (best is None or found.cost < best[1].cost):
+            best = reduced, found
+    return best
+
+
+def _expected_gains(model: ViewModel, solution: Solution) -> FloatArray:
+    """Return (n,): the linear prediction of how much the cost falls without each view."""
+    rows = solution.jacobian.reshape(model.views, 2, -1)
+    damped = solution.information + 1e-12 * np.diag(np.diag(solution.information))
+    leverage = rows @ np.linalg.solve(damped, np.swapaxes(rows, 1, 2).reshape(-1, rows.shape[2], 2))
+    remaining = np.eye(2) * (1.0 + 1e-9) - leverage
+    solved = np.linalg.solve(remaining, solution.residuals[:, :, None])[:, :, 0]
+    return np.asarray(np.sum(solution.residuals * solved, axis=1))

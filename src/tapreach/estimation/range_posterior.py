@@ -1,0 +1,94 @@
+"""How far the target may be, where a single number would lie: a posterior over log range.
+
+Everything but the inverse depth is profiled out, with Laplace's term for the width of what was profiled
+(docs/estimation.md, 9). Where the range is well determined this agrees with the normal approximation.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tapreach.errors import InputError
+from tapreach.estimation.map_solver import Solution, descend
+from tapreach.estimation.view_model import ViewModel
+from tapreach.geometry.finite import FloatArray
+
+_GRID = 32
+_TOLERANCE = 1e-3  # of the squared residuals; the posterior does not show less
+_OPEN_BELOW = 3.84  # chi-square, one degree of freedom, 95 %
+
+
+@dataclass(frozen=True)
+class RangePrior:
+    """Ranges [m] that are possible at all; even odds over the logarithm of the range between them."""
+
+    nearest: float = 0.05
+    farthest: float = 100.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.nearest < self.farthest < float("inf"):
+            raise InputError(
+                f"range prior is {self.nearest} to {self.farthest} m; give 0 < nearest < farthest"
+            )
+
+
+@dataclass(frozen=True)
+class RangePosterior:
+    """Grid of ranges [m] with their probability, and what can be said of the ends.
+
+    is_open_far: the farthest range is not worse than the best by more than chance (95 %).
+    """
+
+    ranges: FloatArray
+    probabilities: FloatArray
+    is_open_far: bool
+
+    def quantile(self, probability: float) -> float:
+        """Return the range [m] below which the target lies with `probability`."""
+        logs = np.log(self.ranges)
+        below = np.concatenate([[0.0], np.cumsum(self.probabilities)])
+        edges = np.concatenate([[logs[0]], (logs[1:] + logs[:-1]) / 2.0, [logs[-1]]])
+        return float(np.exp(np.interp(probability, below, edges)))
+
+
+def range_posterior(model: ViewModel, best: Solution, prior: RangePrior) -> RangePosterior | None:
+    """Return the posterior over the range from the first camera; None where no range at all is feasible."""
+    ranges = _grid(model, best, prior)
+    costs, widths = _profile(model, best, ranges)
+    if not np.any(np.isfinite(costs)):
+        return None
+    cells = np.gradient(np.log(ranges))
+    weights = np.exp(-0.5 * (costs - costs.min())) * widths * cells
+    open_far = bool(costs[-1] - costs.min() < _OPEN_BELOW)
+    return RangePosterior(ranges, weights / weights.sum(), open_far)
+
+
+def _grid(model: ViewModel, best: Solution, prior: RangePrior) -> FloatArray:
+    """Spread ranges evenly in logarithm over the prior, and as many more about the minimum."""
+    everywhere = np.geomspace(prior.nearest, prior.farthest, _GRID)
+    slant = float(np.linalg.norm([*best.x[:2], 1.0]))
+    rho = best.inverse_depth
+    across = best.jacobian[:, 2]
+    sd = 3.0 / max(float(np.sqrt(across @ across)), 1e-12)
+    near_minimum = rho + sd * np.linspace(-4.0, 4.0, _GRID // 2)
+    ranges = slant / near_minimum[near_minimum > 0.0]
+    inside = ranges[(ranges > prior.nearest) & (ranges < prior.farthest)]
+    return np.unique(np.concatenate([everywhere, inside]))
+
+
+def _profile(model: ViewModel, best: Solution, ranges: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least cost at each range, and the volume of what was profiled out (up to a factor)."""
+    costs, log_widths = np.full(len(ranges), np.inf), np.full(len(ranges), -np.inf)
+    free = np.arange(model.unknowns) != 2
+    slant = float(np.linalg.norm([*best.x[:2], 1.0]))
+    middle = int(np.argmin(np.abs(slant / ranges - best.inverse_depth)))
+    for order in (range(middle, len(ranges)), range(middle - 1, -1, -1)):
+        x = best.x.copy()
+        for i in order:
+            x[2] = slant / ranges[i]
+            found = descend(model, x, free, _TOLERANCE)
+            if found is None:
+                continue
+            x, costs[i] = found.x.copy(), found.cost
+            log_widths[i] = -0.5 * np.linalg.slogdet(found.information[np.ix_(free, free)])[1]
+    return costs, np.exp(log_widths - log_widths.max())

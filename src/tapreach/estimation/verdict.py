@@ -1,0 +1,42 @@
+"""Whether a solution is an answer, and if not, why not, in words a person can act on."""
+
+from scipy.stats import chi2
+
+from tapreach.estimation.depth_knowledge import DepthKnowledge
+from tapreach.estimation.map_solver import Solution
+from tapreach.estimation.point_estimate import Status
+from tapreach.estimation.view_model import ViewModel
+
+_LOST_PARALLAX = 0.3  # then not even a target 3 baselines away can be told from one at infinity
+_DIVERGING = -3.0  # sigmas of 1/Z below zero
+_CONTRADICTION = 1e-4  # chance of residuals as large as these
+_SHORT_BASELINE = 1e-6  # [m]; a camera that moved less has only turned
+
+
+def verdict(model: ViewModel, solution: Solution, depth: DepthKnowledge) -> tuple[Status, str]:
+    """Return the status of a solution and its reason."""
+    if depth.lost_parallax > _LOST_PARALLAX:
+        return Status.DEGENERATE, (
+            f"too little parallax: the camera moved {100.0 * depth.baseline:.0f} cm, almost along the line of "
+            f"sight or by less than the errors of tap and odometry can show"
+        )
+    freedom = 2 * int(model.is_used.sum()) - 3
+    if chi2.sf(solution.cost, freedom) < _CONTRADICTION:
+        return Status.INCONSISTENT, (
+            f"the {int(model.is_used.sum())} views contradict each other: squared residuals "
+            f"{solution.cost:.0f} where about {freedom} is right; was the same thing tapped, and did it stand still?"
+        )
+    if depth.inverse_depth < _DIVERGING * depth.sd:
+        return Status.BEHIND, "the lines of sight diverge: they would meet behind the camera"
+    if depth.is_open_far:
+        return Status.RANGE_BOUNDED_BELOW, "the target may be at any range from the lower limit on"
+    return Status.DETERMINED, f"range known to {100.0 * depth.relative_sd:.2g} % (one sigma)"
+
+
+def reason_without_baseline(model: ViewModel) -> str | None:
+    """Return why there is no depth at all, where the camera did not move; else None."""
+    if model.views == 1:
+        return "one view gives a direction and no depth; move and look again"
+    if model.baseline < _SHORT_BASELINE:
+        return "the camera only turned about its own centre, which gives no depth; drive some way"
+    return None
