@@ -53,8 +53,9 @@ def descend(
 ) -> Solution | None:
     """Return the minimum reached from `start` over the unknowns that are `free`; None if start is infeasible.
 
-    It ends after a step that promised to lower the cost by less than `tolerance`. Levenberg's damping is scaled by the information's own diagonal; steps that put the target behind a
-    camera are refused like steps that raise the cost.
+    It ends after a step that promised to lower the cost by less than `tolerance`. Levenberg's damping is
+    scaled by the information's own diagonal; steps that put the target behind a camera are refused like steps
+    that raise the cost.
     """
     x, damping = start.copy(), 1e-9
     now = _linearise(model, x)

@@ -1,4 +1,4 @@
-"""From bearing and inverse depth to uncertain points in the world and on the base (docs/estimation.md, 10)."""
+"""From bearing and inverse depth to uncertain points in world and base (docs/estimation.md, 10)."""
 
 from dataclasses import dataclass
 

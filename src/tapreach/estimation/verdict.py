@@ -17,14 +17,15 @@ def verdict(model: ViewModel, solution: Solution, depth: DepthKnowledge) -> tupl
     """Return the status of a solution and its reason."""
     if depth.lost_parallax > _LOST_PARALLAX:
         return Status.DEGENERATE, (
-            f"too little parallax: the camera moved {100.0 * depth.baseline:.0f} cm, almost along the line of "
-            f"sight or by less than the errors of tap and odometry can show"
+            f"too little parallax: the camera moved {100.0 * depth.baseline:.0f} cm, almost along the line "
+            f"of sight or by less than the errors of tap and odometry can show"
         )
     freedom = 2 * int(model.is_used.sum()) - 3
     if chi2.sf(solution.cost, freedom) < _CONTRADICTION:
         return Status.INCONSISTENT, (
             f"the {int(model.is_used.sum())} views contradict each other: squared residuals "
-            f"{solution.cost:.0f} where about {freedom} is right; was the same thing tapped, and did it stand still?"
+            f"{solution.cost:.0f} where about {freedom} is right; "
+            f"was the same thing tapped, and did it stand still?"
         )
     if depth.inverse_depth < _DIVERGING * depth.sd:
         return Status.BEHIND, "the lines of sight diverge: they would meet behind the camera"
