@@ -1,8 +1,8 @@
 """Calibrate the simulated base as a real one, with a tape measure: `python models/measure_base.py`.
 
 Wheel radius: drive straight and compare the way on the floor with the ticks. Effective track: turn on the
-spot by several turns both ways and compare the heading with the ticks. The truth of the simulation plays the tape
-measure. The numbers go into robots/sim.toml; a test checks that they still fit.
+spot by several turns both ways and compare the heading with the ticks. The truth of the simulation plays the
+tape measure. The numbers go into robots/sim.toml; a test checks that they still fit.
 """
 
 import argparse
