@@ -6,7 +6,8 @@ import pytest
 
 from tapreach.bench.proc import cpu_seconds, family, identify, is_alive
 
-NESTED = "import subprocess, sys; subprocess.run([sys.executable, '-c', 'import sys; print(1, flush=True); sys.stdin.read()'])"
+INNER = "import sys; print(1, flush=True); sys.stdin.read()"
+NESTED = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {INNER!r}])"
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from rich.console import Console
 from tapreach.bench.document import benchmarks_document
 from tapreach.bench.figure import Figure, at_most, exactly
 from tapreach.bench.report import Report, Section, read_report, this_machine, write_report
-from tapreach.bench.table import print_report
+from tapreach.bench.table import print_closing, section_table
 from tapreach.errors import ConfigError
 
 
@@ -47,7 +47,8 @@ def test_machine_is_told_with_cores_and_load():
 
 def test_table_shows_every_figure_and_how_many_hold():
     console = Console(file=io.StringIO(), width=160)
-    print_report(report(), console)
+    console.print(section_table(report().sections[0]))
+    print_closing(report(), console)
     shown = console.file.getvalue()
     assert all(figure.name in shown and figure.shown in shown for figure in report().figures)
     assert "1 of 2 wanted figures hold" in shown

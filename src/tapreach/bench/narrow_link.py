@@ -45,6 +45,7 @@ async def _join(
 ) -> None:
     upstream = socket.socket()
     upstream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)  # before connect: it sets the window
+    upstream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     upstream.setblocking(False)
     await asyncio.get_running_loop().sock_connect(upstream, ("127.0.0.1", target_port))
     server_in, server_out = await asyncio.open_connection(sock=upstream, limit=_BUFFER)

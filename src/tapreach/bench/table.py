@@ -9,12 +9,10 @@ from tapreach.bench.report import Report, Section
 _VERDICT = {True: "[green]holds[/]", False: "[red]does not hold[/]", None: ""}
 
 
-def print_report(report: Report, console: Console) -> None:
-    """Print the machine, a table for each section, and a closing line."""
-    console.print(f"[bold]{report.title}[/]  {report.machine}", highlight=False)
-    for section in report.sections:
-        console.print(section_table(section))
+def print_closing(report: Report, console: Console) -> None:
+    """Print the machine, and how many of the wanted figures hold."""
     limited = [figure for figure in report.figures if figure.limit is not None]
+    console.print(f"[bold]{report.title}[/]  {report.machine}", highlight=False)
     console.print(f"{len(limited) - len(report.broken)} of {len(limited)} wanted figures hold")
 
 

@@ -5,7 +5,7 @@ import json
 import struct
 from dataclasses import dataclass, field
 
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import ClientConnection, connect
 
 from tapreach.errors import InputError
 from tapreach.robot.clock import MS, SECOND, Clock
@@ -69,11 +69,19 @@ async def view(port: int, viewing: Viewing, clock: Clock) -> None:
     async with connect(address, compression=None, max_size=None, max_queue=2) as socket:
         async for message in socket:
             received_ns = clock.now_ns()
-            if isinstance(message, bytes):
+            if isinstance(message, str):
+                await _echo_probe(socket, message)
+            else:
                 arrival = parse_frame(message, received_ns)
                 await socket.send(json.dumps({"ack": arrival.frame_id}))
                 viewing.arrivals.append(arrival)
                 viewing.first.set()
+
+
+async def _echo_probe(socket: ClientConnection, text: str) -> None:
+    # The server measures the empty link's round trip with a small message that is to be sent back at once.
+    if "probe" in json.loads(text):
+        await socket.send(text)
 
 
 async def view_many(

@@ -1,0 +1,68 @@
+"""`tapreach bench`: measure video and control, and write the page that shows the last full runs."""
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+
+from tapreach.bench import control as control_bench
+from tapreach.bench import video as video_bench
+from tapreach.bench.document import benchmarks_document
+from tapreach.bench.report import Report, Section, write_report
+from tapreach.bench.table import print_closing, section_table
+from tapreach.robot.clock import MonotonicClock
+
+bench = typer.Typer(
+    name="bench", help="Measure on this machine, over loopback, with its own load.", no_args_is_help=True
+)
+
+Smoke = Annotated[bool, typer.Option("--smoke", help="a few seconds: shows that the bench works")]
+Json = Annotated[
+    Path | None, typer.Option("--json", help="where the result goes [default: out/bench/NAME.json]")
+]
+Seed = Annotated[int, typer.Option(help="of all that is random")]
+Seconds = Annotated[float, typer.Option(min=1.0, help="for each measurement")]
+
+
+@bench.command()
+def video(smoke: Smoke = False, seconds: Seconds = 20.0, seed: Seed = 1, json: Json = None) -> None:
+    """Age of the pictures at viewers and on the page, slow links, taps, the simulator. About 5 minutes."""
+    plan = video_bench.smoke_plan() if smoke else video_bench.VideoPlan(seconds=seconds, seed=seed)
+    _run(lambda on_section: video_bench.run_video(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def control(
+    smoke: Smoke = False,
+    seconds: Seconds = 60.0,
+    hold: Annotated[float, typer.Option(min=1.0, help="seconds that the drive key is held")] = 610.0,
+    seed: Seed = 1,
+    json: Json = None,
+) -> None:
+    """Command round trip while estimating, times to stop, false stops, processes left. About 15 minutes."""
+    plan = control_bench.ControlPlan(seconds=seconds, hold_seconds=hold, seed=seed)
+    if smoke:
+        plan = control_bench.smoke_plan()
+    _run(lambda on_section: control_bench.run_control(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def document(docs: Annotated[Path, typer.Option(help="folder of the documents")] = Path("docs")) -> None:
+    """Write benchmarks.md in the folder of the documents from the JSON in its folder benchmarks."""
+    page = docs / "benchmarks.md"
+    page.write_text(benchmarks_document(docs / "benchmarks"), encoding="utf-8")
+    Console().print(f"wrote {page}", highlight=False)
+
+
+def _run(
+    measure: Callable[[Callable[[Section], None]], Coroutine[Any, Any, Report]], json: Path | None
+) -> None:
+    console = Console()
+    report = asyncio.run(measure(lambda section: console.print(section_table(section))))
+    print_closing(report, console)
+    path = json or Path("out") / "bench" / f"{report.bench}.json"
+    write_report(report, path)
+    console.print(f"wrote {path}", highlight=False)
