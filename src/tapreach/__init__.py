@@ -1,1 +1,39 @@
 """Tap a thing in a robot's live picture and get its 3D position with an honest error bar."""
+
+from tapreach.errors import InputError, TapreachError
+from tapreach.estimation.floor_guess import FloorGuess, FloorStatus, floor_guess
+from tapreach.estimation.map_estimator import estimate_point
+from tapreach.estimation.motion_prior import MountNoise
+from tapreach.estimation.observation import Observation
+from tapreach.estimation.odometry_noise import OdometryNoise
+from tapreach.estimation.point_estimate import PointEstimate, Status
+from tapreach.estimation.range_posterior import RangePrior
+from tapreach.estimation.two_tap import TwoTapEstimate, TwoTapStatus, two_tap_from_pixels
+from tapreach.geometry.camera import Camera
+from tapreach.geometry.pixel import ImageSize, Pixel
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
+from tapreach.geometry.pose import camera_mount
+
+__all__ = [
+    "Camera",
+    "FloorGuess",
+    "FloorStatus",
+    "ImageSize",
+    "InputError",
+    "MountNoise",
+    "Observation",
+    "OdometryNoise",
+    "Pixel",
+    "PlanarPose",
+    "PlanarStep",
+    "PointEstimate",
+    "RangePrior",
+    "Status",
+    "TapreachError",
+    "TwoTapEstimate",
+    "TwoTapStatus",
+    "camera_mount",
+    "estimate_point",
+    "floor_guess",
+    "two_tap_from_pixels",
+]

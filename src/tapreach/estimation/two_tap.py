@@ -96,7 +96,7 @@ def two_tap(first: ScreenOffset, second: ScreenOffset, focal: float, step: Plana
 
 
 def two_tap_from_pixels(camera: Camera, first: Pixel, second: Pixel, step: PlanarStep) -> TwoTapEstimate:
-    """Return the position from two tapped pixels, lens distortion removed; `distance_per_unit` is per pixel."""
+    """Return the position from two tapped pixels, lens removed; `distance_per_unit` is per pixel."""
     rays = camera.normalise([first.to_array(), second.to_array()])
     offsets = [ScreenOffset(camera.fx * float(x), -camera.fx * float(y)) for x, y in rays]
     return two_tap(offsets[0], offsets[1], camera.fx, step)

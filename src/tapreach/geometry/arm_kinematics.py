@@ -39,7 +39,7 @@ class ReachStatus(StrEnum):
 
 @dataclass(frozen=True)
 class Reach:
-    """Result of the inverse: the joints where reachable; else why not, and by how much [m or rad] it fails."""
+    """Result of the inverse: the joints where reachable; else why not, and what is missing [m or rad]."""
 
     status: ReachStatus
     reason: str
