@@ -16,7 +16,7 @@ FACTORIES = {
 
 
 class RobotFactory(Protocol):
-    """A driver's class, called to make a robot that is not yet connected."""
+    """Called to make a robot that is not yet connected."""
 
     def __call__(self, description: RobotDescription, clock: Clock) -> Robot:
         """Return the robot. Pure: opens nothing."""
@@ -24,7 +24,7 @@ class RobotFactory(Protocol):
 
 
 def factory_of(driver: str) -> RobotFactory:
-    """Return the class of a driver. Raises ConfigError that lists the known names."""
+    """Return what makes the robots of a driver. Raises ConfigError that lists the known names."""
     if driver not in FACTORIES:
         raise ConfigError(f"there is no driver {driver!r}; known are {', '.join(sorted(FACTORIES))}")
     module, name = FACTORIES[driver].split(":")

@@ -1,6 +1,6 @@
 """Which method answers which request."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from typing import Any
 
 from tapreach.server import messages as m
@@ -11,11 +11,15 @@ from tapreach.server.station import Station
 from tapreach.server.visitor import Visitor
 
 Answer = m.Ack | m.Pong | m.Welcome
-Answerer = Callable[[Visitor, Any], Answer | Awaitable[Answer]]
+Answerer = Callable[[Visitor, Any], Any]
+"""Takes its own type of request; returns an Answer, or a coroutine of one."""
 
 
 def answerers(station: Station) -> dict[type[m.Request], Answerer]:
-    """Return the method for every type of request; a test holds it against messages.FromPage."""
+    """Return the method for every type of request; a test holds it against messages.FromPage.
+
+    A method may raise TapreachError, whose text is then the refusal; those that wait are coroutines.
+    """
     driving, looking, tasks = DrivingRequests(station), LookingRequests(station), TaskRequests(station)
     return {
         m.Hello: looking.hello,
@@ -35,8 +39,8 @@ def answerers(station: Station) -> dict[type[m.Request], Answerer]:
         m.TargetClear: tasks.target_clear,
         m.TaskCancel: tasks.task_cancel,
         m.GuideStart: tasks.guide_start,
-        m.GuideTap: tasks.guide_step,
-        m.GuideValue: tasks.guide_step,
-        m.GuideAct: tasks.guide_step,
-        m.GuideEnd: tasks.guide_step,
+        m.GuideTap: tasks.guide_tap,
+        m.GuideValue: tasks.guide_value,
+        m.GuideAct: tasks.guide_act,
+        m.GuideEnd: tasks.guide_end,
     }

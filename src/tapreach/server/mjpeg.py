@@ -39,7 +39,7 @@ class PlainVideo:
             last_id = 0
             yield PART_HEAD
             while True:
-                frame = (await self._feed.newer_than(last_id)).frame
+                frame = await self._feed.frame_newer_than(last_id)
                 last_id = frame.frame_id
                 # A browser shows a part when it has the head of the next one: send that ahead.
                 yield frame.jpeg + b"\r\n" + PART_HEAD

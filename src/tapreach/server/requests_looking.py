@@ -1,6 +1,5 @@
 """Requests that move nothing: who are you, what time is it, keep this picture."""
 
-from tapreach.errors import TapreachError
 from tapreach.server.messages import Ack, Capture, Hello, Ping, Pong, Welcome
 from tapreach.server.station import Station
 from tapreach.server.views import camera_view
@@ -40,8 +39,5 @@ class LookingRequests:
 
     async def capture(self, visitor: Visitor, request: Capture) -> Ack:
         """Store a frame; anyone may."""
-        try:
-            capture_id = await self._station.capture(request.frame_id)
-        except TapreachError as error:
-            return Ack(seq=request.seq, ok=False, reason=str(error))
+        capture_id = await self._station.capture(request.frame_id)
         return Ack(seq=request.seq, ok=True, reason=capture_id)

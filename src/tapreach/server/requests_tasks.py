@@ -1,5 +1,6 @@
-"""Requests about targets, tasks and guides."""
+"""Requests about targets, tasks and guides; only who drives may make them."""
 
+from tapreach.errors import InputError
 from tapreach.server.messages import (
     Ack,
     GuideAct,
@@ -7,41 +8,82 @@ from tapreach.server.messages import (
     GuideStart,
     GuideTap,
     GuideValue,
+    Request,
     TapTarget,
     TargetClear,
     TaskCancel,
 )
 from tapreach.server.station import Station
 from tapreach.server.visitor import Visitor
-
-_NOT_YET = "not available"
+from tapreach.tasks.task import Tap
 
 
 class TaskRequests:
-    """Each method answers one kind of request."""
+    """Each method answers one kind of request; what it raises is answered by the session."""
 
     def __init__(self, station: Station) -> None:
         self._station = station
 
-    def tap(self, visitor: Visitor, request: TapTarget) -> Ack:
+    async def tap(self, visitor: Visitor, request: TapTarget) -> Ack:
         """Locate what was tapped, or guess where it stands on the floor."""
-        return Ack(seq=request.seq, ok=False, reason=_NOT_YET)
+        tap = Tap(request.frame_id, request.u, request.v)
+        self._require_lease(visitor)
+        if request.purpose == "floor":
+            await self._station.tasks.guess_on_floor(tap)
+        else:
+            self._station.tasks.locate(tap, visitor.session_id)
+        return _done(request)
 
     def target_clear(self, visitor: Visitor, request: TargetClear) -> Ack:
         """Forget a target."""
-        is_gone = self._station.targets.clear(request.target_id)
-        reason = "" if is_gone else f"there is no target {request.target_id}"
-        return Ack(seq=request.seq, ok=is_gone, reason=reason)
+        self._require_lease(visitor)
+        self._station.tasks.target_cleared(request.target_id)
+        if not self._station.targets.clear(request.target_id):
+            raise InputError(f"there is no target {request.target_id}")
+        return _done(request)
 
     def task_cancel(self, visitor: Visitor, request: TaskCancel) -> Ack:
-        """Stop the running task."""
-        was_running = self._station.tasks.cancel(f"stopped by {visitor.name}")
-        return Ack(seq=request.seq, ok=was_running, reason="" if was_running else "no task is running")
+        """Stop the running task; anyone may, as with the emergency stop."""
+        if not self._station.tasks.cancel(f"stopped by {visitor.name}"):
+            raise InputError("no task is running")
+        return _done(request)
 
-    def guide_start(self, visitor: Visitor, request: GuideStart) -> Ack:
+    async def guide_start(self, visitor: Visitor, request: GuideStart) -> Ack:
         """Begin a guide."""
-        return Ack(seq=request.seq, ok=False, reason=_NOT_YET)
+        self._require_lease(visitor)
+        await self._station.tasks.open_guide(request.kind, visitor.session_id)
+        return _done(request)
 
-    def guide_step(self, visitor: Visitor, request: GuideTap | GuideValue | GuideAct | GuideEnd) -> Ack:
-        """Go on with the guide."""
-        return Ack(seq=request.seq, ok=False, reason=_NOT_YET)
+    async def guide_tap(self, visitor: Visitor, request: GuideTap) -> Ack:
+        """Take a tap for the guide's step."""
+        self._require_lease(visitor)
+        guide = self._station.tasks.guide_of(visitor.session_id)
+        await guide.tap(Tap(request.frame_id, request.u, request.v))
+        return _done(request)
+
+    async def guide_value(self, visitor: Visitor, request: GuideValue) -> Ack:
+        """Take a typed value."""
+        self._require_lease(visitor)
+        await self._station.tasks.guide_of(visitor.session_id).value(request.name, request.value)
+        return _done(request)
+
+    async def guide_act(self, visitor: Visitor, request: GuideAct) -> Ack:
+        """Do, or confirm, the guide's step."""
+        self._require_lease(visitor)
+        await self._station.tasks.guide_of(visitor.session_id).act(request.act)
+        return _done(request)
+
+    async def guide_end(self, visitor: Visitor, request: GuideEnd) -> Ack:
+        """Leave the guide."""
+        self._station.tasks.guide_of(visitor.session_id)
+        await self._station.tasks.end_guide()
+        return _done(request)
+
+    def _require_lease(self, visitor: Visitor) -> None:
+        if not self._station.lease.is_held_by(visitor.session_id):
+            raise InputError("you do not have the lease: ask to drive first")
+        self._station.lease.command_given(visitor.session_id)
+
+
+def _done(request: Request) -> Ack:
+    return Ack(seq=request.seq, ok=True)

@@ -2,17 +2,20 @@
 
 import asyncio
 import inspect
-from collections.abc import Awaitable
+import logging
 
 from starlette.websockets import WebSocket
 
+from tapreach.errors import TapreachError
 from tapreach.robot.clock import SECOND
 from tapreach.server.background import run_until_first_ends
-from tapreach.server.dispatch import Answer, answerers
+from tapreach.server.dispatch import Answer, Answerer, answerers
 from tapreach.server.messages import Ack, EmergencyStop, FromPage, Hello
 from tapreach.server.parsing import parsed
 from tapreach.server.station import Station
 from tapreach.server.visitor import Visitor
+
+_log = logging.getLogger(__name__)
 
 MOST_PENDING = 8
 """Requests of one session that may be waiting for a file or a computation."""
@@ -74,16 +77,21 @@ class Session:
             reason = f"{MOST_PENDING} requests are being worked on; wait for an answer"
             self._say(Ack(seq=request.seq, ok=False, reason=reason))
             return
-        answer = answerer(self._visitor, request)
-        if inspect.isawaitable(answer):
-            task = asyncio.create_task(self._say_later(answer))
+        if inspect.iscoroutinefunction(answerer):
+            task = asyncio.create_task(self._answer_later(answerer, request))
             self._pending.add(task)
             task.add_done_callback(self._pending.discard)
-        else:
-            self._say(answer)
+            return
+        try:
+            self._say(answerer(self._visitor, request))
+        except Exception as error:
+            self._say(refusal_for(request, error))
 
-    async def _say_later(self, answer: Awaitable[Answer]) -> None:
-        self._say(await answer)
+    async def _answer_later(self, answerer: Answerer, request: FromPage) -> None:
+        try:
+            self._say(await answerer(self._visitor, request))
+        except Exception as error:
+            self._say(refusal_for(request, error))
 
     def _say(self, answer: Answer) -> None:
         self._visitor.outbox.answer(answer.model_dump_json())
@@ -95,3 +103,12 @@ class Session:
         self._credit_ns = now_ns
         if self._credit < 0.0:
             await clock.sleep_until(now_ns + round(-self._credit / RATE_HZ * SECOND))
+
+
+def refusal_for(request: FromPage, error: Exception) -> Ack:
+    """Return the answer to a request that failed; what is no refusal of ours is logged."""
+    if isinstance(error, TapreachError):
+        return Ack(seq=request.seq, ok=False, reason=str(error))
+    _log.error("request %r failed unexpectedly", request.type, exc_info=error)
+    reason = f"{request.type} met an error of the program; the log has the details"
+    return Ack(seq=request.seq, ok=False, reason=reason)

@@ -13,7 +13,7 @@ from tapreach.errors import FrameError, InputError, PoseNotYetKnown, TapreachErr
 from tapreach.estimation.pose_history import PoseHistory
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.recording.captures import CaptureContext, CaptureFolder
-from tapreach.robot.clock import MS, SECOND, Clock
+from tapreach.robot.clock import MS, Clock
 from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.interface import Robot, Unsubscribe
 from tapreach.robot.messages import Frame, Health, Odometry
@@ -23,8 +23,9 @@ from tapreach.server.markers import MarkerProjection
 from tapreach.server.messages import CapturesChanged
 from tapreach.server.state_view import StateView
 from tapreach.server.targets import Targets
-from tapreach.server.task_desk import TaskDesk
+from tapreach.server.task_desk import ComputeService, TaskDesk
 from tapreach.server.video_feed import VideoFeed
+from tapreach.tasks.compute import ComputeProcess
 
 STATE_PERIOD_NS = 100 * MS
 POSE_LAG_NS = 50 * MS
@@ -34,7 +35,10 @@ POSE_LAG_NS = 50 * MS
 class Station:
     """The robot, who may move it, and what is shown of it. One per process."""
 
-    def __init__(self, robot: Robot, clock: Clock, captures: Path) -> None:
+    def __init__(
+        self, robot: Robot, clock: Clock, captures: Path, compute: ComputeService | None = None
+    ) -> None:
+        """`captures`: folder for stored frames. `compute`: a process of its own when left out."""
         self.robot = robot
         self.clock = clock
         self.frames = FrameStore()
@@ -48,7 +52,7 @@ class Station:
         self.deadman = Deadman(clock)
         self.authority = Authority(robot, clock, self.lease, self.deadman, self.emergency_stop)
         self.loop = ControlLoop(self.authority, self._on_task_refused)
-        self.tasks = TaskDesk(self, LoopPilot(self.loop, robot))
+        self.tasks = TaskDesk(self, LoopPilot(self.loop, robot), compute or ComputeProcess())
         self._projection = MarkerProjection(robot.description.camera)
         self.feed = VideoFeed(self._describe)
         self._holder_id: int | None = None
@@ -66,7 +70,7 @@ class Station:
             self.robot.subscribe_health(self._on_health),
         ]
         await self.robot.connect()
-        await self.tasks.start()
+        self.tasks.start()
         self._background = [
             asyncio.create_task(self.loop.run(), name="control loop"),
             asyncio.create_task(self._tell_state(), name="state"),
@@ -149,7 +153,6 @@ class Station:
     def _on_frame(self, frame: Frame) -> None:
         self.frames.add(frame)
         self.feed.publish(frame)
-        self.tasks.frame_arrived(frame)
 
     def _on_health(self, health: Health) -> None:
         if not health.is_running:
@@ -168,6 +171,7 @@ class Station:
             self._holder_id = holder_id
             self.deadman.gone()
             self.loop.stop("the operator has changed")
+            self.tasks.operator_changed()
         self.tell_state()
 
     def _on_task_refused(self, reason: str) -> None:
@@ -190,6 +194,3 @@ class Station:
             return
         error = task.exception() or TapreachError(f"{task.get_name()} ended")
         self.failed.set_exception(error)
-
-
-CAMERA_SILENCE_NS = 2 * SECOND

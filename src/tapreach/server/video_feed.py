@@ -25,9 +25,14 @@ class VideoFeed:
         self._arrival = asyncio.Event()
 
     async def newer_than(self, frame_id: int) -> FramePacket:
+        """Return the newest frame for sending, as soon as it is newer than `frame_id`."""
+        frame = await self.frame_newer_than(frame_id)
+        if self._packet is None:
+            self._packet = FramePacket(frame, self._describe(frame))
+        return self._packet
+
+    async def frame_newer_than(self, frame_id: int) -> Frame:
         """Return the newest frame as soon as it is newer than `frame_id`."""
         while self._newest is None or self._newest.frame_id <= frame_id:
             await self._arrival.wait()
-        if self._packet is None:
-            self._packet = FramePacket(self._newest, self._describe(self._newest))
-        return self._packet
+        return self._newest
