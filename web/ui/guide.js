@@ -9,11 +9,11 @@ import { byId, make, setText } from "./dom.js";
 
 /** @type {Record<string, string>} */
 const ACT_WORDS = {
-  pose: "Take the pose",
+  pose: "Take pose",
   centre: "Centre it",
   turn: "Turn",
   advance: "Advance",
-  next: "Done, next",
+  next: "Next",
   back: "Back",
 };
 

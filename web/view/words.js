@@ -48,7 +48,7 @@ export function motion(linear, angular) {
  */
 export function arrow(linear, angular) {
   const ahead = Math.abs(linear) >= STILL_LINEAR ? Math.sign(linear) : 0;
-  const left = Math.abs(angular) >= STILL_ANGULAR ? Math.sign(angular) : 0;
-  if (ahead === 0 && left === 0) return null;
-  return (Math.atan2(-left, ahead) * 180) / Math.PI;
+  const right = Math.abs(angular) >= STILL_ANGULAR ? -Math.sign(angular) : 0;
+  if (ahead === 0 && right === 0) return null;
+  return (Math.atan2(right, ahead) * 180) / Math.PI;
 }
