@@ -20,11 +20,11 @@ _FRICTION_VOLT = 0.12
 class WheelControl:
     """Speed control of one wheel on encoder ticks: feed-forward and PI with a filtered speed.
 
-    Gains in volt per rad/s; the integral is held when the voltage is at its limit.
+    Gains in volt per rad/s and per rad; the integral is held when the voltage is at its limit.
     """
 
-    proportional: float = 0.25
-    integral: float = 5.0
+    proportional: float = 0.4
+    integral: float = 8.0
     _sum: float = 0.0
     _speed: float = 0.0
 
