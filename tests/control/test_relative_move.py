@@ -1,6 +1,7 @@
 """Turn and advance on a simulated base whose motors answer late and whose encoders count in steps."""
 
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import example, given, settings
@@ -94,7 +95,7 @@ def test_advance_speeds_up_gently_and_stays_below_its_speed(distance, lag):
     _, twists = carried_out(Advance(distance, BASE), LaggingBase(lag))
     speeds = [0.0, *(abs(twist.linear) for twist in twists)]
     assert max(speeds) <= profile.speed + 1e-12
-    rises = [after - before for before, after in zip(speeds, speeds[1:], strict=False)]
+    rises = [after - before for before, after in pairwise(speeds)]
     assert max(rises) <= profile.acceleration * PERIOD + 1e-12
 
 

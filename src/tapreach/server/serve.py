@@ -85,10 +85,12 @@ async def _serve_until_failure(
 ) -> None:
     assert station.failed is not None
     serving = asyncio.create_task(server.serve(sockets=[listener]), name="http")
-    on_ready()
-    await asyncio.wait({serving, station.failed}, return_when=asyncio.FIRST_COMPLETED)
-    server.should_exit = True
-    await serving
+    try:
+        on_ready()
+        await asyncio.wait({serving, station.failed}, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        server.should_exit = True
+        await serving
     if station.failed.done():
         station.failed.result()
 
