@@ -43,7 +43,7 @@ def save_texture(path: Path, pixels: Pixels, colours: int) -> None:
     """Write a PNG of at most `colours` colours, which keeps noisy textures small."""
     picture = Image.fromarray(np.clip(np.rint(pixels), 0, 255).astype(np.uint8))
     palette = picture.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    palette.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
+    palette.save(path, optimize=True)
 
 
 def _stretch_periodic(grid: NDArray[np.float32], height: int, width: int) -> Pixels:

@@ -44,7 +44,7 @@ def centre_of(picture: NDArray[np.uint8], guess: NDArray[np.float64]) -> NDArray
     """Centroid (u, v) of the green blob around a pixel."""
     red, green, blue = (picture[:, :, i].astype(int) for i in range(3))
     mask = ((green > 60) & (red < 0.35 * green) & (blue < 0.35 * green)).astype(np.uint8)
-    _, labels, _, centroids = cv2.connectedComponentsWithStats(mask)
+    _, _, _, centroids = cv2.connectedComponentsWithStats(mask)
     nearest = np.linalg.norm(centroids[1:] - guess, axis=1).argmin()
     return np.asarray(centroids[1:][nearest])
 
