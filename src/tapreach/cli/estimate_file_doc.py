@@ -9,7 +9,7 @@ _HEAD = """# The file of `tapreach estimate`
 
 Generated from the validated model in `src/tapreach/cli/estimate_file.py`; `tapreach estimate --schema`
 prints it as JSON schema. Lengths in metres, angles in radians, pixels with (0, 0) in the centre of the
-top-left pixel. Unknown keys, NaN and infinity are errors. A tap on two pictures with the paper's step between them:
+top-left pixel. Unknown keys, NaN and infinity are errors. Taps on two pictures with a step between:
 
 ```json
 {

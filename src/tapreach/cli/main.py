@@ -5,7 +5,9 @@ import sys
 import typer
 from rich.console import Console
 
+from tapreach.cli.estimate import estimate
 from tapreach.cli.run import run
+from tapreach.cli.two_tap import two_tap
 from tapreach.errors import TapreachError
 
 app = typer.Typer(
@@ -16,6 +18,8 @@ app = typer.Typer(
     add_completion=False,
 )
 app.command()(run)
+app.command("two-tap")(two_tap)
+app.command()(estimate)
 
 
 @app.callback()
