@@ -33,6 +33,12 @@ class InlineCompute:
         await asyncio.sleep(0)
         return function(*arguments)
 
+    async def start(self) -> None:
+        """Nothing to start."""
+
+    async def close(self) -> None:
+        """Nothing to close."""
+
 
 class ComputeProcess:
     """Runs functions, one after the other, in one worker process that never outlives this one.

@@ -13,10 +13,10 @@ import numpy as np
 from tapreach.errors import PoseExpired, PoseNotYetKnown, TapreachError
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel, require_inside
-from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.clock import MS, SECOND
 from tapreach.robot.messages import Frame
 from tapreach.tasks import following
+from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.guessing import DISTANCES, guesses_for
 from tapreach.tasks.sighting import TAP_SIGMA, Sighting, is_apart, ray_of, sigma_in_motion
 from tapreach.tasks.task import Tap, TaskContext
@@ -27,7 +27,6 @@ T = TypeVar("T")
 UNSURE_FACTOR = 2.0
 """An unsure pixel counts with this many times its sigma."""
 _RATE_OVER_NS = 40 * MS
-_POSE_PATIENCE_NS = SECOND
 _SKIP_DISTANCE, _SKIP_ANGLE = 0.02, radians(2.0)
 
 
@@ -62,7 +61,7 @@ class Follower:
         """Look up the tapped frame and begin. Raises FrameError, PoseError, InputError, PictureBroken."""
         frame = self._context.frames.get(self._tap.frame_id)
         pixel = require_inside(Pixel(self._tap.u, self._tap.v), frame.size)
-        world_from_base = await self.pose_at(frame.captured_ns)
+        world_from_base = await pose_at(self._context, frame.captured_ns)
         self.weakness = await self._context.compute.call(
             following.open_track, self._key, frame.jpeg, pixel.u, pixel.v
         )
@@ -115,20 +114,6 @@ class Follower:
         self.sightings.append(replace(seen[-1], pixel=Pixel(float(u), float(v)), sigma=sigma))
         return self.last
 
-    async def pose_at(self, captured_ns: int) -> PlanarPose:
-        """Return world_from_base at a time, waiting up to a second for odometry to arrive. Raises
-        PoseError.
-        """
-        clock = self._context.clock
-        until_ns = clock.now_ns() + _POSE_PATIENCE_NS
-        while True:
-            try:
-                return self._context.poses.at(captured_ns)
-            except PoseNotYetKnown:
-                if clock.now_ns() >= until_ns:
-                    raise
-            await clock.sleep_until(clock.now_ns() + 10 * MS)
-
     async def _follow_next(self, moving: asyncio.Task[Any]) -> None:
         waiting = asyncio.ensure_future(self._context.next_frame(self._frame_id))
         try:
@@ -140,7 +125,7 @@ class Follower:
 
     async def _follow(self, frame: Frame) -> Sighting | None:
         self._frame_id = frame.frame_id
-        world_from_base = await self.pose_at(frame.captured_ns)
+        world_from_base = await pose_at(self._context, frame.captured_ns)
         guesses = guesses_for(self.last, world_from_base, self._context.description, self._distances())
         track = await self._context.compute.call(following.follow, self._key, frame.jpeg, guesses)
         self.loss = track.reason if track.status is TrackStatus.LOST else ""

@@ -74,7 +74,10 @@ class TaskContext:
 class Task(Protocol):
     """Something the robot does by itself, under the eyes of an operator."""
 
-    kind: str
+    @property
+    def kind(self) -> str:
+        """What the page calls it."""
+        ...
 
     async def run(self, context: TaskContext) -> str:
         """Do it and return the closing sentence. Raises TapreachError with a reason when it cannot be done.

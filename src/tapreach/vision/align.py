@@ -18,8 +18,10 @@ from tapreach.vision.warp import Warp, chained, inverted, is_seen, patch_grid, s
 
 _ITERATIONS = 12
 _STANDS_STILL = 0.01
-_LINEAR_SIGMA = 0.06
+_LINEAR_SIGMA = 0.04
 """Prior of each entry of the linear part against its starting value."""
+_LEAST_SEEN = 0.2
+"""Share of a patch's weight that must be on the picture."""
 _LEAST_NOISE = 2.0
 """Grey levels; a JPEG is never quieter."""
 _NEIGHBOURS = 3.0
@@ -58,7 +60,7 @@ def align(patch: Patch, picture: Gray, start: Warp, search: int = 0) -> Alignmen
     With `search` all shifts up to that many patch pixels are compared first, which widens the basin.
     """
     weights = patch.weights * is_seen(start, patch.half, picture.shape)
-    if weights.sum() < 0.5 * patch.weights.sum():
+    if weights.sum() <= _LEAST_SEEN * (weights.size / 4.0) or weights.sum() < 0.5 * patch.weights.sum():
         return None
     region = region_around(picture, start, patch.half + search)
     warp = _best_shift(patch, region, start, search) if search else start

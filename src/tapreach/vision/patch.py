@@ -11,7 +11,7 @@ from tapreach.vision.image_io import Gray
 from tapreach.vision.region import Values, region_around
 from tapreach.vision.warp import Warp, is_seen, patch_grid, warp_at
 
-HALF_SIZES = (9, 13, 18)
+HALF_SIZES = (11, 15, 20)
 NOISE = 3.0
 """Grey levels of camera noise assumed before any is measured."""
 GOOD_SIGMA = 0.12

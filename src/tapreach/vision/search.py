@@ -11,7 +11,7 @@ from tapreach.vision.region import region_around
 from tapreach.vision.track import Guess
 from tapreach.vision.warp import Warp, chained, scale_of, warp_at
 
-_LEAST_PEAK = 0.75
+_LEAST_PEAK = 0.80
 _CLEARLY = 0.08
 _FIRST_REACH = 14
 _MOST_REACH = 60

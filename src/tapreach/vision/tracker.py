@@ -20,17 +20,20 @@ from tapreach.vision.image_io import Gray
 from tapreach.vision.patch import Patch, cut_patch, patch_of_half
 from tapreach.vision.search import find_again
 from tapreach.vision.track import Guess, Track, TrackStatus
-from tapreach.vision.warp import Warp, chained, inverted, scale_of, warp_at
+from tapreach.vision.warp import Warp, calmed, chained, inverted, scale_of, warp_at
 
 _GOOD_SCORE = 0.80
+_SURE_SCORE = 0.90
 _LEAST_SCORE = 0.60
 _LEAST_SUPPORT = 0.35
-_SEARCH = 5
-_LEAST_SIGMA = 0.2
-_SIGMA_PER_LOG_SCALE = 0.8
+_SEARCH = 4
+_LEAST_SIGMA = 0.35
+_SIGMA_PER_LOG_SCALE = 1.2
 """A place seen from nearer or farther looks different: so much is added per factor e [px of the tapped
 frame].
 """
+_APART_FROM_SURROUNDINGS = 2.5
+"""A place that moves this much [px of the tapped frame] apart from its surroundings in one picture is doubted."""
 _NEW_LOOK_SCALE = 1.25
 _MOST_SIGMA = 4.0
 _POINTS_WANTED = 14
@@ -121,9 +124,9 @@ class PatchTracker:
 
     def _starts(self, motion: Motion | None, guesses: Sequence[Guess]) -> Iterable[Warp]:
         if motion is not None:
-            yield chained(motion.now_from_before, self._warp)
+            yield calmed(chained(motion.now_from_before, self._warp))
         elif not self._lost_for:
-            yield self._warp
+            yield calmed(self._warp)
         if guesses:
             yield self._moved_to(guesses[0])
 
@@ -170,14 +173,14 @@ class PatchTracker:
         return "it is hidden, or looks too different now"
 
     def _accept(self, picture: Gray, fit: _Fit, motion: Motion | None) -> Track:
-        self._warp, self._picture, self._lost_for = fit.warp, picture, 0
+        before, self._warp, self._picture, self._lost_for = self._warp, fit.warp, picture, 0
         self._points = motion.agreeing if motion is not None else np.zeros((0, 2), np.float32)
         if len(self._points) < _POINTS_WANTED:
             self._points = self._corners()
-        if fit.is_good:
-            self._renew_look(picture, fit)
         sigma = math.sqrt(fit.variance)
-        reason = self._doubt(fit, sigma)
+        reason = self._doubt(fit, sigma) or self._odd_motion(fit, before, motion) or self.weakness
+        if fit.is_good and reason in ("", self.weakness):
+            self._renew_look(picture, fit)
         self._must_prove = False
         status = TrackStatus.UNSURE if reason else TrackStatus.FOLLOWED
         return Track(status, reason, Pixel(*map(float, fit.warp[:, 2])), sigma, scale_of(fit.warp), fit.score)
@@ -191,13 +194,21 @@ class PatchTracker:
             return "it looks different from what was tapped"
         if sigma > _MOST_SIGMA:
             return f"its place is known to {sigma:.0f} px only"
-        return self.weakness
+        return ""
+
+    def _odd_motion(self, fit: _Fit, before: Warp, motion: Motion | None) -> str:
+        if motion is None:
+            return ""
+        expected = chained(motion.now_from_before, before)[:, 2]
+        apart = float(np.hypot(*(fit.warp[:, 2] - expected)))
+        limit = _APART_FROM_SURROUNDINGS * max(1.0, scale_of(fit.warp))
+        return "it moves apart from its surroundings" if apart > limit else ""
 
     def _renew_look(self, picture: Gray, fit: _Fit) -> None:
         """Take a new look when the tapped one will soon be too different in size."""
         base = scale_of(self._later.tapped_from_patch) if self._later is not None else 1.0
         change = scale_of(fit.warp) * base
-        if 1.0 / _NEW_LOOK_SCALE < change < _NEW_LOOK_SCALE:
+        if 1.0 / _NEW_LOOK_SCALE < change < _NEW_LOOK_SCALE or fit.score < _SURE_SCORE:
             return
         now = warp_at(float(fit.warp[0, 2]), float(fit.warp[1, 2]))
         patch = patch_of_half(picture, now, self._tapped.patch.half)

@@ -48,3 +48,14 @@ def is_seen(warp: Warp, half: int, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     pixels = patch_grid(half) @ warp[:, :2].T + warp[:, 2]
     height, width = shape[:2]
     return np.asarray(np.all((pixels >= 0.0) & (pixels <= (width - 1, height - 1)), axis=1))
+
+
+def calmed(warp: Warp, kept: float = 0.88) -> Warp:
+    """Return the warp with its turn and shear reduced to the share `kept`; scale and centre stay.
+
+    A camera that stays upright sees little of either: what the picture does not keep up must not add up.
+    """
+    scale = scale_of(warp)
+    upright = scale * np.eye(2)
+    linear = upright + kept * (warp[:, :2] - upright)
+    return np.column_stack([linear * (scale / scale_of(linear)), warp[:, 2]])
