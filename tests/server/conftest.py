@@ -104,7 +104,9 @@ class Served:
         return frame.frame_id
 
     async def page(self, name: str = "Anna", greet: bool = True) -> Page:
-        page = Page(await connect(f"ws://{self.host}/ws/control", compression=None), self.clock)
+        page = Page(
+            await connect(f"ws://{self.host}/ws/control", compression=None, close_timeout=1), self.clock
+        )
         self._pages.append(page)
         if greet:
             await page.ask("hello", name=name)

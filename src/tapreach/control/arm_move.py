@@ -1,9 +1,10 @@
 """Sending the arm somewhere and waiting until it has come to rest."""
 
+from collections.abc import Callable
+
 from tapreach.control.motion import Progress, Senses
 from tapreach.errors import LinkLost
 from tapreach.robot.clock import MS, SECOND
-from tapreach.robot.interface import Arm
 from tapreach.robot.messages import STILL, ArmPose, Twist
 
 SETTLE_NS = 150 * MS
@@ -11,14 +12,17 @@ GIVE_UP_NS = 10 * SECOND
 
 
 class ArmMove:
-    """Ends when the arm has reported rest for 150 ms; gives up after 10 s. The wheels stand meanwhile."""
+    """Ends when the arm has reported rest for 150 ms; gives up after 10 s. The wheels stand meanwhile.
+
+    `send` passes the target on to the arm, once, at the first step.
+    """
 
     moves_arm = True
 
-    def __init__(self, arm: Arm, target: ArmPose) -> None:
+    def __init__(self, send: Callable[[ArmPose], object], target: ArmPose) -> None:
         self.progress = Progress.MOVING
         self.reason = ""
-        self._arm = arm
+        self._send = send
         self._target = target
         self._start_ns: int | None = None
         self._resting_since_ns: int | None = None
@@ -27,14 +31,14 @@ class ArmMove:
         """See Motion."""
         if self._start_ns is None:
             self._start_ns = now_ns
-            self._send()
+            self._begin()
         if self.progress is Progress.MOVING:
             self._watch(senses, now_ns, self._start_ns)
         return STILL
 
-    def _send(self) -> None:
+    def _begin(self) -> None:
         try:
-            self._arm.move(self._target)
+            self._send(self._target)
         except LinkLost as error:
             self.progress, self.reason = Progress.GIVEN_UP, str(error)
 

@@ -12,9 +12,11 @@ from tapreach.control.speed_limit import SpeedLimits
 from tapreach.errors import LinkLost
 from tapreach.robot.clock import MS, SECOND
 from tapreach.robot.interface import Unsubscribe
-from tapreach.robot.messages import STILL, ArmState, Odometry, Twist
+from tapreach.robot.messages import STILL, ArmPose, ArmState, Odometry, Twist
 
 PERIOD_NS = 20 * MS
+ARM_REPORT_NS = 200 * MS
+"""So long it may take until the arm's own reports show a new target."""
 LONGEST_STEP = 3 * PERIOD_NS / SECOND
 """Ramps do not catch up on a stall: no step counts for more than this [s]."""
 
@@ -44,6 +46,8 @@ class ControlLoop:
         self._senses = Senses()
         self._task_owner_id: int | None = None
         self._motion: tuple[Motion, asyncio.Future[Odometry]] | None = None
+        self._arm_sent: ArmPose | None = None
+        self._arm_sent_ns = 0
         self.sent = Sent()
         self.overruns = 0
 
@@ -91,11 +95,23 @@ class ControlLoop:
         self.refuse_task(reason)
         return self._send(self._gate.stop())
 
+    @property
+    def arm_target(self) -> ArmPose | None:
+        """Where the arm was sent last, also when it has not reported that yet; None while nothing is known."""
+        if self._arm_sent is not None and self._clock.now_ns() - self._arm_sent_ns < ARM_REPORT_NS:
+            return self._arm_sent
+        return self._senses.arm.target if self._senses.arm is not None else None
+
+    def move_arm(self, target: ArmPose) -> ArmPose:
+        """Send the arm somewhere; the one door to it. Returns the target after limits. Raises LinkLost."""
+        self._arm_sent, self._arm_sent_ns = self._robot.arm.move(target), self._clock.now_ns()
+        return self._arm_sent
+
     def hold_arm(self) -> None:
         """Send the arm to where it is."""
         if self._senses.arm is not None:
             try:
-                self._robot.arm.move(self._senses.arm.pose)
+                self.move_arm(self._senses.arm.pose)
             except LinkLost:
                 return  # health says it; the arm holds by itself without a host
 

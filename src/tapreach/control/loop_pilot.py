@@ -24,4 +24,4 @@ class LoopPilot:
 
     async def move_arm(self, target: ArmPose) -> None:
         """See Pilot."""
-        await self._loop.carry_out(ArmMove(self._robot.arm, target))
+        await self._loop.carry_out(ArmMove(self._loop.move_arm, target))

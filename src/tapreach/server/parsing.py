@@ -8,6 +8,14 @@ from pydantic_core import from_json
 from tapreach.server.messages import Ack, FromPage, from_page
 
 LONGEST_TEXT = 16_384
+JSON_NAMES = {
+    list: "an array",
+    str: "a string",
+    int: "a number",
+    float: "a number",
+    bool: "true or false",
+    type(None): "null",
+}
 
 
 def parsed(raw: str | bytes) -> FromPage | Ack:
@@ -21,7 +29,7 @@ def parsed(raw: str | bytes) -> FromPage | Ack:
     except ValueError as error:
         return _refused(None, f"not JSON: {error}")
     if not isinstance(value, dict):
-        return _refused(None, f"a {type(value).__name__}; a message is an object with 'type' and 'seq'")
+        return _refused(None, f"{JSON_NAMES[type(value)]}; a message is an object with 'type' and 'seq'")
     try:
         # strict: a number in quotes is no number.
         return from_page.validate_json(raw, strict=True)

@@ -81,12 +81,12 @@ class DrivingRequests:
 
     def arm_step(self, visitor: Visitor, request: ArmStep) -> Ack:
         """One press of an arm control, from where the arm was last sent."""
-        state = self._station.loop.senses.arm
-        if state is None:
+        present = self._station.loop.arm_target
+        if present is None:
             return _ack(request, "the arm has not reported yet")
         section = self._station.robot.description.arm
-        target = jogged(state.target, request.control, request.step_deg, section)
-        if target == state.target:
+        target = jogged(present, request.control, request.step_deg, section)
+        if target == present:
             return _ack(request, f"{request.control}: the arm is at its limit")
         return self._move_arm(visitor, request, target)
 
@@ -122,7 +122,7 @@ class DrivingRequests:
             return _ack(request, reason)
         station.loop.refuse_task("the operator moves the arm")
         try:
-            station.robot.arm.move(target)
+            station.loop.move_arm(target)
         except LinkLost as error:
             return _ack(request, str(error))
         return _ack(request)

@@ -20,8 +20,8 @@ from tapreach.tasks.target import Target
 from tapreach.tasks.task import Compute, Tap, TaskContext, TaskReport
 
 if TYPE_CHECKING:
-    from tapreach.tasks.guide import Guide
     from tapreach.server.station import Station
+    from tapreach.tasks.guide import Guide
 
 CAMERA_SILENCE_NS = 2 * SECOND
 
@@ -57,7 +57,7 @@ class TaskDesk:
             show_target=self._show_target,
         )
         self._runner = TaskRunner(self._context, station.loop, self._tell_progress)
-        self._guide: "Guide | None" = None
+        self._guide: Guide | None = None
         self._guide_owner_id: int | None = None
         self._located_target_id: int | None = None
         self._background: set[asyncio.Task[None]] = set()
