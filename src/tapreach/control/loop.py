@@ -97,7 +97,7 @@ class ControlLoop:
 
     @property
     def arm_target(self) -> ArmPose | None:
-        """Where the arm was sent last, also when it has not reported that yet; None while nothing is known."""
+        """Where the arm was sent last, also when it has not reported that yet; None while unknown."""
         if self._arm_sent is not None and self._clock.now_ns() - self._arm_sent_ns < ARM_REPORT_NS:
             return self._arm_sent
         return self._senses.arm.target if self._senses.arm is not None else None
