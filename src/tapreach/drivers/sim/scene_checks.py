@@ -49,6 +49,11 @@ def check_places(
             _check_inside(solid, room_x, room_y, f"the {piece.kind}", "furniture", index)
             if solid.overlaps(ROBOT_AT_START):
                 raise PlacedValueError(f"the {piece.kind} stands in the robot's start", "furniture", index)
+    for first, second in combinations(range(len(furniture)), 2):
+        if any(a.overlaps(b) for a in pieces[first] for b in pieces[second]):
+            one, other = furniture[first], furniture[second]
+            message = f"the {other.kind} overlaps the {one.kind} at {one.position}"
+            raise PlacedValueError(message, "furniture", second, "position")
     _check_objects(room_x, room_y, furniture, pieces, objects)
 
 

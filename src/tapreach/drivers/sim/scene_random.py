@@ -44,10 +44,10 @@ def _empty_room(rng: np.random.Generator, seed: int) -> Table:
             "wall": _one_of(rng, ["wallpaper", "brick", "plain"]),
         },
         "light": {
-            "ambient": rng.uniform(0.3, 0.5),
-            "sun": rng.uniform(0.4, 0.7),
+            "ambient": rng.uniform(0.38, 0.52),
+            "sun": rng.uniform(0.5, 0.72),
             "warmth": rng.uniform(-0.3, 0.6),
-            "azimuth_deg": rng.uniform(40.0, 90.0),
+            "azimuth_deg": rng.uniform(90.0, 135.0),
             "elevation_deg": rng.uniform(35.0, 65.0),
         },
         "hangings": [window, poster],
