@@ -9,7 +9,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from scenarios.running import COMMAND, Running, is_alive, tapreach_run
+from tests.scenarios.running import COMMAND, Running, is_alive, tapreach_run
 
 GONE_WITHIN_S = 1.0
 

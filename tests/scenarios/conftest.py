@@ -1,0 +1,97 @@
+"""The whole product: `tapreach run` with the simulated rover, and a real browser on its page."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from playwright.sync_api import Browser, Page, sync_playwright
+from tests.scenarios.running import tapreach_run
+
+from tapreach.cli.robot_file import find_robot_file
+from tapreach.drivers.sim.scene import load_scene
+from tapreach.geometry.camera import Camera
+from tapreach.robot.config import load_robot
+
+CHROMIUM = os.environ.get("TAPREACH_CHROMIUM") or shutil.which("chromium") or "/usr/bin/chromium"
+ARGUMENTS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+MINUS = "\N{MINUS SIGN}"
+TABLET = {"width": 1024, "height": 768}
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        yield chromium
+        chromium.close()
+
+
+class Operator:
+    """A person at the page, who knows where things stand in the room when the robot starts."""
+
+    def __init__(self, page: Page, scene: str) -> None:
+        self.page = page
+        self._objects = {thing.name: thing for thing in load_scene(scene).objects}
+        description = load_robot(find_robot_file("sim"))
+        self._camera: Camera = description.camera.model()
+        self._camera_from_world = description.camera.mount.base_from_camera().inv()
+
+    def middle_of(self, name: str) -> NDArray[np.float64]:
+        """Where the middle of a thing is, world frame [m]."""
+        thing = self._objects[name]
+        return np.array([*thing.position, thing.up + thing.tall / 2])
+
+    def radius_of(self, name: str) -> float:
+        """Half the width of a thing [m]."""
+        return self._objects[name].width / 2
+
+    def tap(self, name: str) -> None:
+        """Tap the middle of a thing as it is seen from the start."""
+        in_camera = self._camera_from_world.apply(self.middle_of(name))
+        (u, v) = self._camera.project(in_camera[None]).pixels[0]
+        self.tap_pixel(float(u), float(v))
+
+    def tap_pixel(self, u: float, v: float) -> None:
+        """Tap a pixel of the picture."""
+        x, y = self.page.evaluate(
+            """([u, v, width, height]) => {
+                const box = document.getElementById('picture').getBoundingClientRect();
+                const scale = Math.min(box.width / width, box.height / height);
+                return [box.left + (box.width - width * scale) / 2 + (u + 0.5) * scale,
+                        box.top + (box.height - height * scale) / 2 + (v + 0.5) * scale];
+            }""",
+            [u, v, self._camera.size.width, self._camera.size.height],
+        )
+        self.page.mouse.click(x, y)
+
+    def read_position(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Read X, Y, Z and their 95 % half widths from the target card, base frame [m]."""
+        texts = self.page.locator("#card-xyz dd").all_inner_texts()
+        numbers = [float(text.replace("cm", "").replace("±", "").replace(MINUS, "-")) / 100 for text in texts]
+        return np.array(numbers[0::2]), np.array(numbers[1::2])
+
+    def odometry(self) -> str:
+        """What the page says of the wheels."""
+        return self.page.locator("#odometry").inner_text()
+
+
+@pytest.fixture
+def operator(browser: Browser, tmp_path: Path) -> Iterator[Operator]:
+    """Somebody who has just opened the page of a robot in the room `room` and holds the lease."""
+    troubles: list[str] = []
+    with tapreach_run(tmp_path, "--scene", "room") as run:
+        context = browser.new_context(viewport=TABLET, reduced_motion="reduce")  # type: ignore[arg-type]
+        page = context.new_page()
+        page.set_default_timeout(60_000)
+        page.on("pageerror", lambda error: troubles.append(str(error)))
+        page.add_init_script("localStorage.setItem('tapreach.hints', '3')")
+        page.goto(run.address)
+        page.wait_for_selector("body:not(.cannot-drive)")
+        page.wait_for_function("document.getElementById('lease-who').textContent === 'You'")
+        yield Operator(page, "room")
+        context.close()
+    assert troubles == []
