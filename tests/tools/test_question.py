@@ -1,5 +1,6 @@
 """The one question the setup asks, at a real terminal."""
 
+import errno
 import os
 import pty
 import subprocess
@@ -21,9 +22,20 @@ def answer_at_a_terminal(typed: str, **environment: str) -> str:
         os.close(theirs)
         os.write(ours, typed.encode())
         shell.wait(timeout=30)
-    seen = os.read(ours, 4096).decode()
-    os.close(ours)
-    return seen
+    return read_to_the_end(ours)
+
+
+def read_to_the_end(terminal: int) -> str:
+    """Everything shown; it may arrive in pieces, and Linux ends a terminal without a writer with EIO."""
+    seen = b""
+    with os.fdopen(terminal, "rb", buffering=0) as screen:
+        try:
+            while piece := screen.read(4096):
+                seen += piece
+        except OSError as error:
+            if error.errno != errno.EIO:
+                raise
+    return seen.decode()
 
 
 @pytest.mark.parametrize("typed", ["\n", "y\n", "Yes\n"])
