@@ -112,9 +112,9 @@ def machine_words(text: str) -> list[str]:
 
 
 def is_known(host: str) -> bool:
-    return (
-        host in KNOWN_HOSTS or re.fullmatch(r"(127|10|192\.168|192\.0\.2|169\.254)(\.\d+)+", host) is not None
-    )
+    if host in KNOWN_HOSTS or host.endswith(RESERVED):
+        return True
+    return re.fullmatch(r"(127|10|192\.168|192\.0\.2|169\.254)(\.\d+)+", host) is not None
 
 
 def test_only_the_clock_reads_the_time() -> None:
