@@ -17,8 +17,8 @@ top-left pixel. Unknown keys, NaN and infinity are errors. Taps on two pictures 
   "mount": {"position": [0.1, 0, 0.15], "pitch": 0.1745},
   "odometry": {"advance_fraction": 0.01, "turn_fraction": 0.01},
   "views": [
-    {"camera": "front", "pixel": [319.5, 269.4], "sigma_px": 1},
-    {"camera": "front", "pixel": [497.6, 276.4], "sigma_px": 1, "step": {"turn": 0.2094, "advance": 0.2}}
+    {"camera": "front", "pixel": [319.5, 269.5], "sigma_px": 1},
+    {"camera": "front", "pixel": [491.6, 307.8], "sigma_px": 1, "step": {"turn": 0.2094, "advance": 0.2}}
   ]
 }
 ```

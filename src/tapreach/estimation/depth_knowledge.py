@@ -5,9 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tapreach.estimation.map_solver import Solution, inverse_depth_information, target_information
+from tapreach.estimation.map_solver import (
+    Solution,
+    information_at,
+    inverse_depth_information,
+    target_information,
+)
 from tapreach.estimation.range_posterior import RangePosterior, RangePrior, range_posterior
 from tapreach.estimation.view_model import ViewModel
+from tapreach.geometry.finite import FloatArray
 
 _NORMAL = 0.05  # relative sd up to which the inverse depth, and so the range, may be called normal
 _TWO_SIDED_95 = 1.96
@@ -18,10 +24,12 @@ class DepthKnowledge:
     """inverse_depth 1/Z [1/m] and its sd in the first camera; slant: range over Z of the target's ray.
 
     baseline [m]: the greatest distance between two cameras. posterior: over the range, where needed.
+    least_sd: the larger of sd and the sd for a target at infinity, which noise cannot have made look near.
     """
 
     inverse_depth: float
     sd: float
+    least_sd: float
     slant: float
     baseline: float
     posterior: RangePosterior | None
@@ -34,7 +42,7 @@ class DepthKnowledge:
     @property
     def lost_parallax(self) -> float:
         """sd(1/Z)·baseline: one over the number of baselines up to which a depth could be told at all."""
-        return self.sd * self.baseline
+        return self.least_sd * self.baseline
 
     @property
     def is_open_far(self) -> bool:
@@ -61,12 +69,18 @@ class DepthKnowledge:
 
 def depth_knowledge(model: ViewModel, solution: Solution, prior: RangePrior) -> DepthKnowledge:
     """Return what the solution tells about the depth; the posterior only where 1/Z is not nearly normal."""
-    on_target = target_information(solution.information)
-    on_depth = inverse_depth_information(on_target)
-    # Compared with what the depth would have if all else were known: below that it is rounding.
-    sd = 1.0 / math.sqrt(on_depth) if on_depth > 1e-12 * on_target[2, 2] else math.inf
+    sd = _sd(solution.information)
     slant = float(np.linalg.norm([*solution.x[:2], 1.0]))
     rho = solution.inverse_depth
     is_normal = rho > 0.0 and sd <= _NORMAL * rho
     posterior = None if is_normal or math.isinf(sd) else range_posterior(model, solution, prior)
-    return DepthKnowledge(rho, sd, slant, model.baseline, posterior)
+    at_infinity = information_at(model, model.at(0.0))
+    least_sd = sd if at_infinity is None else max(sd, _sd(at_infinity))
+    return DepthKnowledge(rho, sd, least_sd, slant, model.baseline, posterior)
+
+
+def _sd(information: FloatArray) -> float:
+    on_target = target_information(information)
+    on_depth = inverse_depth_information(on_target)
+    # Compared with what the depth would have if all else were known: below that it is rounding.
+    return 1.0 / math.sqrt(on_depth) if on_depth > 1e-12 * on_target[2, 2] else math.inf

@@ -11,7 +11,7 @@ import numpy as np
 from tapreach.errors import InputError
 from tapreach.estimation.advice import advice_to_halve
 from tapreach.estimation.depth_knowledge import DepthKnowledge, depth_knowledge
-from tapreach.estimation.map_solver import Solution
+from tapreach.estimation.map_solver import Solution, covariance_of
 from tapreach.estimation.motion_prior import Motion, MountNoise, camera_errors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.outlier import solve_without_outliers
@@ -69,7 +69,7 @@ def _answer(
     residuals_px = model.residuals_px(model.predict(solution.x))
     if status is Status.DEGENERATE:
         return _unknown(status, reason, model, advice, residuals_px)
-    covariance = np.asarray(np.linalg.inv(solution.information), dtype=np.float64)
+    covariance = covariance_of(solution.information)
     is_determined = status is Status.DETERMINED
     world = point_in_world(model, observations[0], solution.x, covariance) if is_determined else None
     base = point_in_last_base(model, observations[-1], solution.x, covariance) if is_determined else None

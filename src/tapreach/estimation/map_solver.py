@@ -88,6 +88,13 @@ def target_information(information: FloatArray) -> FloatArray:
     return np.asarray(target - mixed @ np.linalg.solve(errors, mixed.T))
 
 
+def covariance_of(information: FloatArray) -> FloatArray:
+    """Return the inverse; scaled first, as the unknowns of a near target differ by many powers of ten."""
+    scale = 1.0 / np.sqrt(np.diag(information))
+    scaling = np.outer(scale, scale)
+    return np.asarray(np.linalg.inv(information * scaling) * scaling, dtype=np.float64)
+
+
 def inverse_depth_information(on_target: FloatArray) -> float:
     """Return the information [m²] on rho alone, bearing marginalised; 0 or a rounding error when singular."""
     bearing, mixed = on_target[:2, :2], on_target[:2, 2]

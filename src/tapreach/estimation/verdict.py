@@ -9,26 +9,28 @@ from tapreach.estimation.view_model import ViewModel
 
 _LOST_PARALLAX = 0.3  # then not even a target 3 baselines away can be told from one at infinity
 _DIVERGING = -3.0  # sigmas of 1/Z below zero
-_CONTRADICTION = 1e-4  # chance of residuals as large as these
+_CONTRADICTION = 9.0  # over what 1 % chance allows; real taps have heavier tails than normal
 _SHORT_BASELINE = 1e-6  # [m]; a camera that moved less has only turned
 
 
 def verdict(model: ViewModel, solution: Solution, depth: DepthKnowledge) -> tuple[Status, str]:
     """Return the status of a solution and its reason."""
-    if depth.lost_parallax > _LOST_PARALLAX:
-        return Status.DEGENERATE, (
-            f"too little parallax: the camera moved {100.0 * depth.baseline:.0f} cm, almost along the line "
-            f"of sight or by less than the errors of tap and odometry can show"
-        )
     freedom = 2 * int(model.is_used.sum()) - 3
-    if chi2.sf(solution.cost, freedom) < _CONTRADICTION:
+    is_contradictory = solution.cost > _CONTRADICTION * float(chi2.ppf(0.99, max(freedom, 1)))
+    diverging = is_contradictory or depth.inverse_depth < _DIVERGING * depth.sd
+    if depth.inverse_depth < 0.0 and diverging:
+        return Status.BEHIND, "the lines of sight diverge: they would meet behind the camera"
+    if is_contradictory:
         return Status.INCONSISTENT, (
             f"the {int(model.is_used.sum())} views contradict each other: squared residuals "
             f"{solution.cost:.0f} where about {freedom} is right; "
             f"was the same thing tapped, and did it stand still?"
         )
-    if depth.inverse_depth < _DIVERGING * depth.sd:
-        return Status.BEHIND, "the lines of sight diverge: they would meet behind the camera"
+    if depth.lost_parallax > _LOST_PARALLAX:
+        return Status.DEGENERATE, (
+            f"too little parallax: the camera moved {100.0 * depth.baseline:.0f} cm, almost along the line "
+            f"of sight or by less than the errors of tap and odometry can show"
+        )
     if depth.is_open_far:
         return Status.RANGE_BOUNDED_BELOW, "the target may be at any range from the lower limit on"
     return Status.DETERMINED, f"range known to {100.0 * depth.relative_sd:.2g} % (one sigma)"
