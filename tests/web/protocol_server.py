@@ -51,8 +51,9 @@ class ProtocolServer:
         self.markers: list[object] = []
         self.sends_frames = True
         self.refuses = False
-        self.is_silent = False
+        self.silent_session = 0
         self.tap_refusal = ""
+        self.capture_delay_ns = 0
         self.captures: list[Json] = []
         self.received: list[Json] = []
         self.acked: list[int] = []
@@ -160,7 +161,7 @@ class ProtocolServer:
         self._sessions += 1
         session = self._sessions
         self._sockets[session] = socket
-        ticker = asyncio.create_task(self._tick(socket))
+        ticker = asyncio.create_task(self._tick(socket, session))
         try:
             async for text in socket.iter_text():
                 await self._take(socket, session, json.loads(text))
@@ -172,9 +173,9 @@ class ProtocolServer:
             if self.state["lease"]["holder_id"] == session:
                 self._lease(holder_id=None, holder_name="")
 
-    async def _tick(self, socket: WebSocket) -> None:
+    async def _tick(self, socket: WebSocket, session: int) -> None:
         while True:
-            if not self.is_silent:
+            if session != self.silent_session:
                 await socket.send_text(json.dumps(self.state))
             await asyncio.sleep(0.1)
 
@@ -183,7 +184,7 @@ class ProtocolServer:
         with self._heard:
             self.received.append({**message, "session": session})
             self._heard.notify_all()
-        if self.is_silent:
+        if session == self.silent_session:
             return
         answer = self._answer(session, message)
         await socket.send_text(json.dumps(answer))
@@ -250,7 +251,8 @@ class ProtocolServer:
     def _frame(self, frame_id: int) -> bytes:
         jpeg = stamped_jpeg(self.background, frame_id)
         height, width = self.background.shape[:2]
-        return video_message(frame_id, time.monotonic_ns(), jpeg, (width, height), self.markers)
+        captured_ns = time.monotonic_ns() - self.capture_delay_ns
+        return video_message(frame_id, captured_ns, jpeg, (width, height), self.markers)
 
     async def _list_captures(self, _: Request) -> Response:
         if self.refuses:

@@ -77,22 +77,22 @@ export class Picture extends EventTarget {
 
   draw() {
     const { ctx, painted } = this;
-    const ratio = this.canvas.width / Math.max(1, this.canvas.clientWidth);
+    const box = this.canvas.getBoundingClientRect();
     ctx.setTransform(1, 0, 0, 1, 0, 0);
     ctx.fillStyle = "#0b0d10";
     ctx.fillRect(0, 0, this.canvas.width, this.canvas.height);
     const placement = this.placement();
     if (!painted || !placement) return;
-    ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
+    ctx.setTransform(this.canvas.width / box.width, 0, 0, this.canvas.height / box.height, 0, 0);
     ctx.drawImage(painted.bitmap, placement.left, placement.top, placement.width, placement.height);
     for (const paintOver of this.painters) paintOver(ctx, placement, painted.frame);
   }
 
   /** Canvas pixels follow the screen's own; painted at once, since resizing clears the canvas. */
   resize() {
-    const { clientWidth, clientHeight } = this.canvas;
-    this.canvas.width = Math.max(1, Math.round(clientWidth * devicePixelRatio));
-    this.canvas.height = Math.max(1, Math.round(clientHeight * devicePixelRatio));
+    const box = this.canvas.getBoundingClientRect();
+    this.canvas.width = Math.max(1, Math.round(box.width * devicePixelRatio));
+    this.canvas.height = Math.max(1, Math.round(box.height * devicePixelRatio));
     this.draw();
   }
 
@@ -100,7 +100,9 @@ export class Picture extends EventTarget {
   placement() {
     if (!this.painted) return null;
     const { width, height } = this.cameraSize ?? this.painted.bitmap;
-    return placePicture(this.canvas.clientWidth, this.canvas.clientHeight, width, height);
+    // Not clientWidth, which is rounded: taps are exact to a fraction of a pixel.
+    const box = this.canvas.getBoundingClientRect();
+    return placePicture(box.width, box.height, width, height);
   }
 
   /**
