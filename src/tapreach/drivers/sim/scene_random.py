@@ -19,7 +19,9 @@ def random_scene(seed: int, objects: int = 7) -> Scene:
     """
     rng = np.random.default_rng([seed, 3])
     scene = Scene.model_validate(_empty_room(rng, seed))
-    scene = _filled(scene, "furniture", [_furniture(rng) for _ in range(5)])
+    scene = _filled(
+        scene, "furniture", [_furniture(rng) for _ in range(5)] + [_behind(rng) for _ in range(2)]
+    )
     things = [_red_can(rng)] + [_thing(rng) for _ in range(objects - 1)]
     return _filled(scene, "objects", things)
 
@@ -85,6 +87,11 @@ def _furniture(rng: np.random.Generator) -> Callable[[], Table]:
         }
 
     return make
+
+
+def _behind(rng: np.random.Generator) -> Callable[[], Table]:
+    kind = _one_of(rng, ["shelf", "plant", "chair"])
+    return lambda: {"kind": kind, "position": (rng.uniform(-1.0, -0.8), rng.uniform(-1.5, 1.5))}
 
 
 def _red_can(rng: np.random.Generator) -> Callable[[], Table]:
