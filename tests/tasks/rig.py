@@ -1,4 +1,6 @@
-"""A whole robot in simulated time: world, camera, control loop, operator, frames, poses; what a task needs."""
+"""A whole robot in simulated time: world, camera, control loop, operator, frames, poses; what a task
+needs.
+"""
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
@@ -30,7 +32,7 @@ from tapreach.robot.messages import Frame, Odometry
 from tapreach.tasks.compute import InlineCompute
 from tapreach.tasks.runner import TaskProgress, TaskRunner
 from tapreach.tasks.target import Target
-from tapreach.tasks.task import TaskContext, TaskReport
+from tapreach.tasks.task import TaskContext
 
 ROOT = Path(__file__).resolve().parents[2]
 OPERATOR = 1
@@ -39,6 +41,27 @@ CAMERA_SILENCE_NS = 2 * SECOND
 
 def sim_description() -> RobotDescription:
     return load_robot(ROOT / "robots" / "sim.toml")
+
+
+def bare_context() -> TaskContext:
+    """A context without a robot, for what never touches one."""
+    clock = ManualClock()
+
+    async def no_frame(frame_id: int) -> Frame:
+        raise LinkLost("there is no camera")
+
+    return TaskContext(
+        description=sim_description(),
+        robot=None,  # type: ignore[arg-type]
+        pilot=None,  # type: ignore[arg-type]
+        frames=FrameStore(),
+        poses=PoseHistory(),
+        compute=InlineCompute(),
+        clock=clock,
+        next_frame=no_frame,
+        report=lambda report: None,
+        show_target=lambda target: None,
+    )
 
 
 class Frames:

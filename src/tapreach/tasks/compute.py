@@ -7,6 +7,7 @@ does not.
 import asyncio
 import importlib
 import itertools
+import os
 import pickle
 import sys
 from asyncio.subprocess import PIPE, Process
@@ -19,6 +20,9 @@ from tapreach.tasks.compute_worker import LENGTH, with_length
 T = TypeVar("T")
 
 _WARM_MODULES = ("tapreach.tasks.following", "tapreach.tasks.estimating")
+
+# On a small machine the other cores belong to the control loop and the camera.
+_ONE_THREAD = {"OPENCV_FOR_THREADS_NUM": "1", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 class ComputeDied(TapreachError):
@@ -97,7 +101,10 @@ class ComputeProcess:
                 if self._deaths >= 2:
                     raise ComputeDied("the worker process died twice in a row; restart tapreach")
                 command = (sys.executable, "-m", "tapreach.tasks.compute_worker")
-                self._process = await asyncio.create_subprocess_exec(*command, stdin=PIPE, stdout=PIPE)
+                environment = {**os.environ, **_ONE_THREAD}
+                self._process = await asyncio.create_subprocess_exec(
+                    *command, stdin=PIPE, stdout=PIPE, env=environment
+                )
                 self._reader = asyncio.create_task(self._read(self._process), name="compute answers")
             return self._process
 

@@ -13,8 +13,6 @@ import struct
 import sys
 from typing import BinaryIO
 
-from tapreach.vision.threads import use_one_thread
-
 LENGTH = struct.Struct("<Q")
 _PR_SET_PDEATHSIG = 1
 
@@ -28,7 +26,6 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides.
     calls, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    use_one_thread()
     serve(calls, answers)
 
 

@@ -24,7 +24,7 @@ from tapreach.vision.warp import Warp, calmed, chained, inverted, scale_of, warp
 
 _GOOD_SCORE = 0.80
 _SURE_SCORE = 0.90
-_LEAST_SCORE = 0.60
+_LEAST_SCORE = 0.70
 _LEAST_SUPPORT = 0.35
 _SEARCH = 4
 _LEAST_SIGMA = 0.35
@@ -33,7 +33,7 @@ _SIGMA_PER_LOG_SCALE = 1.2
 frame].
 """
 _APART_FROM_SURROUNDINGS = 2.5
-"""A place that moves this much [px of the tapped frame] apart from its surroundings in one picture is doubted."""
+"""A place that moves this far apart from its surroundings is doubted [px of the tapped frame]."""
 _NEW_LOOK_SCALE = 1.25
 _MOST_SIGMA = 4.0
 _POINTS_WANTED = 14
@@ -159,7 +159,7 @@ class PatchTracker:
         self._lost_for += 1
         found = find_again(self._tapped.patch, picture, self._warp, guesses, self._lost_for)
         fit = self._fit(picture, found) if found is not None else None
-        if fit is None or not fit.is_good:
+        if fit is None or not fit.is_good or fit.score < _SURE_SCORE:
             return Track(TrackStatus.LOST, self._loss_reason(guesses), None, 0.0, scale_of(self._warp), 0.0)
         self._must_prove = True
         return self._accept(picture, fit, None)
