@@ -68,7 +68,7 @@ def _answer(
     rejected = tuple(int(i) for i in np.flatnonzero(~model.is_used))
     residuals_px = model.residuals_px(model.predict(solution.x))
     if status is Status.DEGENERATE:
-        return _unknown(status, reason, model, advice, residuals_px)
+        return _unknown(status, reason, model, residuals_px)
     covariance = covariance_of(solution.information)
     is_determined = status is Status.DETERMINED
     world = point_in_world(model, observations[0], solution.x, covariance) if is_determined else None
@@ -93,13 +93,13 @@ def _answer(
 
 
 def _unknown(
-    status: Status, reason: str, model: ViewModel, advice: str = "", residuals_px: FloatArray | None = None
+    status: Status, reason: str, model: ViewModel, residuals_px: FloatArray | None = None
 ) -> PointEstimate:
     """Return a result that knows no depth."""
     return PointEstimate(
         status=status,
         reason=reason,
-        advice=advice or "drive so that the target moves sideways in the picture",
+        advice="drive so that the target moves sideways in the picture",
         bearing=None,
         inverse_depth=None,
         bearing_inverse_depth_cov=None,

@@ -1,7 +1,6 @@
 """Views that do not fit the others: found by how much the cost falls without them (docs/estimation.md, 8)."""
 
 import numpy as np
-from scipy.stats import chi2
 
 from tapreach.estimation.map_solver import Solution, solve
 from tapreach.estimation.view_model import ViewModel
@@ -21,7 +20,7 @@ def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | Non
     """
     solution = solve(model)
     while solution is not None and int(model.is_used.sum()) >= _FEWEST_TO_BLAME:
-        limit = float(chi2.ppf(1.0 - _FALSE_ALARMS / int(model.is_used.sum()), 2))
+        limit = chi2_limit(1.0 - _FALSE_ALARMS / int(model.is_used.sum()), 2)
         better = _best_without_one(model, solution, _HOPE * limit)
         if better is None or solution.cost - better[1].cost < limit:
             break

@@ -1,7 +1,5 @@
 """Whether a solution is an answer, and if not, why not, in words a person can act on."""
 
-from scipy.stats import chi2
-
 from tapreach.estimation.depth_knowledge import DepthKnowledge
 from tapreach.estimation.map_solver import Solution
 from tapreach.estimation.point_estimate import Status
@@ -16,7 +14,7 @@ _SHORT_BASELINE = 1e-6  # [m]; a camera that moved less has only turned
 def verdict(model: ViewModel, solution: Solution, depth: DepthKnowledge) -> tuple[Status, str]:
     """Return the status of a solution and its reason."""
     freedom = 2 * int(model.is_used.sum()) - 3
-    is_contradictory = solution.cost > _CONTRADICTION * float(chi2.ppf(0.99, max(freedom, 1)))
+    is_contradictory = solution.cost > _CONTRADICTION * chi2_limit(0.99, max(freedom, 1))
     diverging = is_contradictory or depth.inverse_depth < _DIVERGING * depth.sd
     if depth.inverse_depth < 0.0 and diverging:
         return Status.BEHIND, "the lines of sight diverge: they would meet behind the camera"
