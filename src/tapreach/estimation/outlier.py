@@ -5,6 +5,7 @@ import numpy as np
 from tapreach.estimation.map_solver import Solution, solve
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.gaussian import chi2_limit
 
 _FALSE_ALARMS = 0.01
 _FEWEST_TO_BLAME = 4  # of three views, any two agree well enough without the third

@@ -4,6 +4,7 @@ from tapreach.estimation.depth_knowledge import DepthKnowledge
 from tapreach.estimation.map_solver import Solution
 from tapreach.estimation.point_estimate import Status
 from tapreach.estimation.view_model import ViewModel
+from tapreach.geometry.gaussian import chi2_limit
 
 _LOST_PARALLAX = 0.3  # then not even a target 3 baselines away can be told from one at infinity
 _DIVERGING = -3.0  # sigmas of 1/Z below zero

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import chi2
+from scipy.special import gammaincinv
 
 from tapreach.errors import InputError
 from tapreach.geometry.finite import FloatArray, finite_array
@@ -40,7 +40,8 @@ def require_covariance(name: str, covariance: npt.ArrayLike, size: int) -> Float
 
 def chi2_limit(probability: float, dimensions: int) -> float:
     """Return the squared Mahalanobis distance that holds `probability` of a normal distribution."""
-    return float(chi2.ppf(probability, dimensions))
+    # scipy.stats.chi2.ppf, without the second that importing scipy.stats takes.
+    return 2.0 * float(gammaincinv(dimensions / 2.0, probability))
 
 
 def confidence_ellipse(covariance: npt.ArrayLike, probability: float = 0.95) -> Ellipse:
