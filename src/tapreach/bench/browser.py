@@ -10,15 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from websockets.asyncio.server import ServerConnection, serve
 
-from tapreach.errors import SetupError
+from tapreach.errors import SetupError, TapreachError
 from tapreach.robot.clock import MS, Clock
 
 if TYPE_CHECKING:
-    from playwright.async_api import Page
+    from playwright.async_api import Browser, Page
 
 _CANDIDATES = ("chromium", "google-chrome", "google-chrome-stable", "chromium-browser")
 _PROBE = Path(__file__).with_name("browser_probe.js")
 _EXCHANGES = 100
+
+
+class BrowserFailed(TapreachError):
+    """The page did not do what was waited for."""
 
 
 def chromium_path() -> str:
@@ -35,22 +39,41 @@ def chromium_path() -> str:
 
 
 @contextlib.asynccontextmanager
-async def chromium_page(width: int = 1280, height: int = 800) -> AsyncIterator["Page"]:
-    """Yield a page of a fresh headless Chromium with the probe in it. Raises SetupError."""
+async def chromium() -> AsyncIterator["Browser"]:
+    """Yield a headless Chromium. Raises SetupError, and BrowserFailed for what goes wrong in it later."""
     try:
-        from playwright.async_api import async_playwright
+        from playwright.async_api import Error, async_playwright
     except ImportError as error:
         raise SetupError("Playwright is needed to measure the page: pip install 'tapreach[dev]'") from error
     path = chromium_path()
     async with async_playwright() as playwright:
         browser = await playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         try:
-            context = await browser.new_context(viewport={"width": width, "height": height}, bypass_csp=True)
-            page = await context.new_page()
-            await page.add_init_script(path=_PROBE)
-            yield page
+            yield browser
+        except Error as error:
+            raise BrowserFailed(f"Chromium: {error.message.splitlines()[0]}") from error
         finally:
             await browser.close()
+
+
+@contextlib.asynccontextmanager
+async def fresh_page(browser: "Browser", width: int = 1280, height: int = 800) -> AsyncIterator["Page"]:
+    """Yield a page without a past, with the probe in it."""
+    # The probe's clock socket is of another origin, which the operator page's policy forbids.
+    context = await browser.new_context(viewport={"width": width, "height": height}, bypass_csp=True)
+    try:
+        page = await context.new_page()
+        await page.add_init_script(path=_PROBE)
+        yield page
+    finally:
+        await context.close()
+
+
+@contextlib.asynccontextmanager
+async def chromium_page() -> AsyncIterator["Page"]:
+    """Yield a page of a Chromium of its own. Raises SetupError."""
+    async with chromium() as browser, fresh_page(browser) as page:
+        yield page
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from tapreach.bench.control_hold import measure_hold
 from tapreach.bench.control_latency import measure_latency
-from tapreach.bench.control_leftover import measure_leftovers
+from tapreach.bench.control_leftover import ENDS, measure_leftovers
 from tapreach.bench.control_stop import measure_stops
 from tapreach.bench.report import Report, Section
 from tapreach.bench.series import Measurement, run_series
@@ -24,13 +24,15 @@ class ControlPlan:
     """In each of the ways to stop."""
     hold_seconds: float = 610.0
     freezes: int = 10
+    ends: tuple[str, ...] = tuple(ENDS)
+    """Ways in which a run is ended."""
     is_smoke: bool = False
     seed: int = 1
 
 
 def smoke_plan() -> ControlPlan:
     """A plan that only shows that everything works."""
-    return ControlPlan(seconds=2.0, stops=1, hold_seconds=2.0, freezes=1, is_smoke=True)
+    return ControlPlan(seconds=2.0, stops=1, hold_seconds=2.0, freezes=1, ends=("SIGKILL",), is_smoke=True)
 
 
 async def run_control(plan: ControlPlan, on_section: Callable[[Section], None], clock: Clock) -> Report:
@@ -47,6 +49,6 @@ async def run_control(plan: ControlPlan, on_section: Callable[[Section], None], 
         Measurement("Round trip", served(lambda s: measure_latency(s, plan.seconds, plan.seed, clock))),
         Measurement("Stops", served(lambda s: measure_stops(s, plan.stops, plan.seed, clock))),
         Measurement("Page", served(lambda s: measure_hold(s, plan.hold_seconds, plan.freezes, clock))),
-        Measurement("Leftovers", lambda: measure_leftovers(clock)),
+        Measurement("Leftovers", lambda: measure_leftovers(plan.ends, clock)),
     )
     return await run_series("control", "Control", plan.is_smoke, measurements, on_section, clock)

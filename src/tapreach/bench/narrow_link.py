@@ -9,6 +9,7 @@ from tapreach.robot.clock import SECOND, Clock
 
 _CHUNK = 2048
 _BUFFER = 8192
+_WAITING_CHUNKS = 4
 # Small buffers on both sides: what waits must wait in the sender, as before a slow modem with a short queue.
 
 
@@ -70,10 +71,28 @@ async def _pass_freely(source: asyncio.StreamReader, sink: asyncio.StreamWriter)
 async def _pass_slowly(
     source: asyncio.StreamReader, sink: asyncio.StreamWriter, bytes_per_second: float, clock: Clock
 ) -> None:
-    free_ns = clock.now_ns()
-    while data := await source.read(_CHUNK):
-        # A chunk arrives when its last byte does, and the line is busy until then.
-        free_ns = max(free_ns, clock.now_ns()) + round(len(data) / bytes_per_second * SECOND)
-        await clock.sleep_until(free_ns)
-        sink.write(data)
-        await sink.drain()
+    # Stamped on arrival: when this process is scheduled late, the line was busy all the same and catches up.
+    arrived: asyncio.Queue[tuple[int, bytes]] = asyncio.Queue(_WAITING_CHUNKS)
+    stamping = asyncio.create_task(_stamp(source, arrived, clock))
+    free_ns = 0
+    try:
+        while True:
+            arrived_ns, data = await arrived.get()
+            if not data:
+                return
+            # A chunk arrives when its last byte does, and the line is busy until then.
+            free_ns = max(free_ns, arrived_ns) + round(len(data) / bytes_per_second * SECOND)
+            await clock.sleep_until(free_ns)
+            sink.write(data)
+            await sink.drain()
+    finally:
+        stamping.cancel()
+
+
+async def _stamp(
+    source: asyncio.StreamReader, arrived: "asyncio.Queue[tuple[int, bytes]]", clock: Clock
+) -> None:
+    data = b"-"
+    while data:
+        data = await source.read(_CHUNK)
+        await arrived.put((clock.now_ns(), data))

@@ -20,13 +20,16 @@ class Machine:
     cores: int
     load: float
     """One-minute load average at the start: work of others on the same cores."""
+    nice: int
+    """Priority over the others: below zero goes before them."""
     system: str
     python: str
     date: str
 
     def __str__(self) -> str:
+        raised = f" (the bench at nice {self.nice})" if self.nice else ""
         return (
-            f"{self.processor}, {self.cores} cores, load {self.load:.1f} at the start, "
+            f"{self.processor}, {self.cores} cores, load {self.load:.1f} at the start{raised}, "
             f"{self.system}, Python {self.python}, {self.date}"
         )
 
@@ -37,6 +40,7 @@ def this_machine(now: datetime) -> Machine:
         processor=_processor_name(),
         cores=len(os.sched_getaffinity(0)),
         load=os.getloadavg()[0],
+        nice=os.getpriority(os.PRIO_PROCESS, 0),
         system=f"Linux {platform.release().split('-')[0]}",
         python=platform.python_version(),
         date=now.date().isoformat(),

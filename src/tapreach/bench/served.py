@@ -24,12 +24,11 @@ class Wheels:
         self._changed = asyncio.Event()
 
     def hear(self, line: Any) -> None:
-        """Take one line of the pattern server: [time, linear, angular], or a count of estimates."""
+        """Take one line of the pattern server: twists, or a count of estimates."""
         if isinstance(line, dict):
             self.estimates = line["estimates"]
             return
-        when_ns, linear, angular = line
-        self.sent.append(SentTwist(when_ns, Twist(linear, angular)))
+        self.sent += [SentTwist(when_ns, Twist(linear, angular)) for when_ns, linear, angular in line]
         self._changed.set()
 
     async def next(

@@ -25,6 +25,12 @@ class VideoPlan:
 
     seconds: float = 20.0
     """For each measurement of an age."""
+    adapt_seconds: float = 3.0
+    """For the quality to follow a thin link before it is measured."""
+    sizes: tuple[ImageSize, ...] = (VGA, HD)
+    """Of the pictures in Chromium."""
+    simulator_starts: int = 2
+    """The last is measured; from the second on they are warm."""
     taps: int = 10_000
     mouse_taps: int = 300
     is_smoke: bool = False
@@ -33,7 +39,15 @@ class VideoPlan:
 
 def smoke_plan() -> VideoPlan:
     """A plan that only shows that everything works."""
-    return VideoPlan(seconds=1.0, taps=50, mouse_taps=5, is_smoke=True)
+    return VideoPlan(
+        seconds=1.0,
+        adapt_seconds=0.3,
+        sizes=(VGA,),
+        simulator_starts=1,
+        taps=50,
+        mouse_taps=5,
+        is_smoke=True,
+    )
 
 
 async def run_video(plan: VideoPlan, on_section: Callable[[Section], None], clock: Clock) -> Report:
@@ -48,14 +62,19 @@ async def run_video(plan: VideoPlan, on_section: Callable[[Section], None], cloc
 
         return run
 
-    seconds, seed = plan.seconds, plan.seed
+    seconds, adapt, seed = plan.seconds, plan.adapt_seconds, plan.seed
+
+    async def in_chromium(server: PatternServer) -> Section:
+        return await measure_page(server, RATE_HZ, seconds, seed, clock)
+
     measurements = (
         Measurement("Python viewers", served(VGA, lambda s: measure_viewers(s, RATE_HZ, seconds, clock))),
-        Measurement("Slow viewer", served(VGA, lambda s: measure_slow_viewer(s, RATE_HZ, seconds, clock))),
-        Measurement("6 Mbit/s", served(VGA, lambda s: measure_narrow_link(s, seconds, clock))),
-        Measurement("Chromium", served(VGA, lambda s: measure_page(s, RATE_HZ, seconds, seed, clock))),
-        Measurement("Chromium, HD", served(HD, lambda s: measure_page(s, RATE_HZ, seconds, seed, clock))),
+        Measurement(
+            "Slow viewer", served(VGA, lambda s: measure_slow_viewer(s, RATE_HZ, seconds, adapt, clock))
+        ),
+        Measurement("6 Mbit/s", served(VGA, lambda s: measure_narrow_link(s, seconds, adapt, clock))),
+        *(Measurement(f"Chromium, {size.width} px", served(size, in_chromium)) for size in plan.sizes),
         Measurement("Taps", served(VGA, lambda s: measure_taps(s, plan.taps, plan.mouse_taps, seed))),
-        Measurement("Simulator", lambda: measure_simulator(max(seconds, 3.0), clock)),
+        Measurement("Simulator", lambda: measure_simulator(plan.simulator_starts, max(seconds, 3.0), clock)),
     )
     return await run_series("video", "Video", plan.is_smoke, measurements, on_section, clock)

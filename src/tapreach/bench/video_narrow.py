@@ -12,12 +12,15 @@ SLOW_SHARE = 0.3
 """What the slow viewer's link carries of the stream."""
 NARROW_BITS_PER_SECOND = 6_000_000
 OTHERS = 3
-ADAPT_SECONDS = 3.0
-"""Time for quality to follow the link before the measurement begins."""
 
 
-async def measure_slow_viewer(server: PatternServer, rate_hz: float, seconds: float, clock: Clock) -> Section:
-    """Compare viewers with and without a slow one beside them, twice each in turn, and watch the slow one."""
+async def measure_slow_viewer(
+    server: PatternServer, rate_hz: float, seconds: float, adapt_seconds: float, clock: Clock
+) -> Section:
+    """Compare viewers with and without a slow one beside them, twice each in turn, and watch the slow one.
+
+    The quality has `adapt_seconds` to follow the link before each measurement.
+    """
     alone: list[float] = []
     beside: list[float] = []
     slow = Viewing()
@@ -28,7 +31,7 @@ async def measure_slow_viewer(server: PatternServer, rate_hz: float, seconds: fl
         alone += [age for viewing in viewings for age in viewing.ages_ms]
         async with narrow_link(server.port, SLOW_SHARE * stream_bytes, clock) as slow_port:
             ports = [server.port] * OTHERS + [slow_port]
-            *viewings, slow = await view_many(ports, seconds, clock, ADAPT_SECONDS)
+            *viewings, slow = await view_many(ports, seconds, clock, adapt_seconds)
         beside += [age for viewing in viewings for age in viewing.ages_ms]
     return Section(
         f"One slow viewer among {OTHERS + 1}",
@@ -74,14 +77,16 @@ def _other_figures(alone: list[float], beside: list[float]) -> tuple[Figure, ...
     )
 
 
-async def measure_narrow_link(server: PatternServer, seconds: float, clock: Clock) -> Section:
+async def measure_narrow_link(
+    server: PatternServer, seconds: float, adapt_seconds: float, clock: Clock
+) -> Section:
     """Watch through a link of 6 Mbit/s, which carries a good half of the stream."""
     async with narrow_link(server.port, NARROW_BITS_PER_SECOND / 8, clock) as port:
-        (viewing,) = await view_many([port], seconds, clock, ADAPT_SECONDS)
+        (viewing,) = await view_many([port], seconds, clock, adapt_seconds)
     sizes = [arrival.size_bytes for arrival in viewing.arrivals]
     return Section(
         "A link of 6 Mbit/s",
-        f"One viewer; measured from {ADAPT_SECONDS:.0f} s on, when the quality has followed the link.",
+        f"One viewer; measured from {adapt_seconds:.0f} s on, when the quality has followed the link.",
         (
             Figure("rate", viewing.rate_hz, "Hz", at_least(25)),
             Figure("median age", median(viewing.ages_ms), "ms", at_most(60)),

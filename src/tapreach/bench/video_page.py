@@ -5,7 +5,7 @@ import json
 from typing import TYPE_CHECKING
 from urllib.request import urlopen
 
-from tapreach.bench.browser import chromium_page
+from tapreach.bench.browser import chromium, fresh_page
 from tapreach.bench.child import started
 from tapreach.bench.drawn import Drawing, ages_ms, finish, watch_drawing
 from tapreach.bench.figure import Figure, at_most
@@ -17,7 +17,7 @@ from tapreach.geometry.pixel import ImageSize
 from tapreach.robot.clock import Clock
 
 if TYPE_CHECKING:
-    from playwright.async_api import Page
+    from playwright.async_api import Browser, Page
 
 CANVAS = "canvas#picture"
 _SHOW_STREAM = "document.body.innerHTML = '<img src=/stream.mjpg>'"
@@ -27,10 +27,15 @@ Ages = tuple[list[float], Drawing]
 async def measure_page(
     server: PatternServer, rate_hz: float, seconds: float, seed: int, clock: Clock
 ) -> Section:
-    """Measure the operator page, our own MJPEG and the plain MJPEG peer, each alone in a fresh browser."""
-    page_ages, drawing = await _with_observer(server, "/", "", CANVAS, seconds, clock)
-    mjpeg_ages, _ = await _with_observer(server, "/snapshot.jpg", _SHOW_STREAM, "img", seconds, clock)
-    peer_ages, _ = await _peer(server.size, rate_hz, seconds, seed, clock)
+    """Measure the operator page, our own MJPEG and the plain MJPEG peer, each alone in the browser."""
+    async with chromium() as browser:
+
+        async def watch(path: str, script: str, selector: str) -> Ages:
+            return await _with_observer(browser, server, path, script, selector, seconds, clock)
+
+        page_ages, drawing = await watch("/", "", CANVAS)
+        mjpeg_ages, _ = await watch("/snapshot.jpg", _SHOW_STREAM, "img")
+        peer_ages, _ = await _peer(browser, server.size, rate_hz, seconds, seed, clock)
     interval_ms = 1000 / rate_hz
     return Section(
         f"Chromium, {server.size.width} x {server.size.height}",
@@ -65,13 +70,19 @@ def _peer_figures(page: list[float], mjpeg: list[float], peer: list[float]) -> t
 
 
 async def _with_observer(
-    server: PatternServer, path: str, script: str, selector: str, seconds: float, clock: Clock
+    browser: "Browser",
+    server: PatternServer,
+    path: str,
+    script: str,
+    selector: str,
+    seconds: float,
+    clock: Clock,
 ) -> Ages:
     # A Python viewer beside the browser learns from the headers when each frame was captured.
     viewing = Viewing()
     observer = asyncio.create_task(view(server.port, viewing, clock))
     try:
-        async with chromium_page() as page:
+        async with fresh_page(browser) as page:
             await page.goto(server.url.rstrip("/") + path)
             drawing = await _watch(page, script, selector, server.size, seconds, clock)
     finally:
@@ -88,9 +99,11 @@ async def _watch(
     return await watch_drawing(page, selector, size, seconds, clock)
 
 
-async def _peer(size: ImageSize, rate_hz: float, seconds: float, seed: int, clock: Clock) -> Ages:
+async def _peer(
+    browser: "Browser", size: ImageSize, rate_hz: float, seconds: float, seed: int, clock: Clock
+) -> Ages:
     arguments = (size.width, size.height, rate_hz, seed)
-    async with started("tapreach.bench.mjpeg_peer", *arguments) as peer, chromium_page() as page:
+    async with started("tapreach.bench.mjpeg_peer", *arguments) as peer, fresh_page(browser) as page:
         url = f"http://localhost:{peer.port}"
         await page.goto(url)
         drawing = await _watch(page, _SHOW_STREAM, "img", size, seconds, clock)
