@@ -35,7 +35,7 @@ def test_angle_is_read_in_any_of_its_units(angle):
 
 @pytest.mark.parametrize("bad", ["20", "20 furlongs", "nan m", "inf cm", "", "1e999m", "cm"])
 def test_length_without_sense_names_what_is_right(bad):
-    with pytest.raises(InputError, match="--advance is .*"):
+    with pytest.raises(InputError, match="--advance is"):
         read_length("--advance", bad)
 
 

@@ -215,12 +215,12 @@ def test_covariance_for_another_number_of_views_is_refused():
 
 @pytest.mark.parametrize(("depth", "views"), [(0.7, 3), (2.0, 8)])
 def test_errors_reach_the_bound_and_regions_hold_what_they_promise(depth, views):
-    rng = np.random.default_rng(20)
+    rng = np.random.default_rng(7)
     steps = [PlanarStep(0.21 / (views - 1), 0.25 / (views - 1))] * (views - 1)
     target = MOUNT.apply([0.05, 0.02, depth])
     said, errors, distances, in_base, in_range = poses_along(steps), [], [], [], []
     truth = np.array([0.05 / depth, 0.02 / depth, 1.0 / depth])
-    for _ in range(250):
+    for _ in range(400):
         factors = 1.0 + 0.02 * rng.normal(size=(len(steps), 2))
         true = poses_along(
             [PlanarStep(s.turn * a, s.advance * b) for s, (a, b) in zip(steps, factors, strict=True)]
@@ -235,8 +235,8 @@ def test_errors_reach_the_bound_and_regions_hold_what_they_promise(depth, views)
         low, high = estimate.range_interval_95
         in_range.append(low < depth * np.linalg.norm([*truth[:2], 1.0]) < (high or np.inf))
     bound = position_bound(sightings, target, OdometryNoise.per_step(0.02))
-    # Three sigmas of what 250 trials can show about each figure.
-    assert np.sqrt(np.mean(np.square(errors))) * depth == pytest.approx(bound.relative_sd, rel=0.14)
+    # Three sigmas of what 400 trials can show.
+    assert np.sqrt(np.mean(np.square(errors))) * depth == pytest.approx(bound.relative_sd, rel=0.106)
     assert 0.91 < np.mean(np.array(distances) < chi2.ppf(0.95, 3)) < 0.99
     assert 0.90 < np.mean(np.array(in_base) < chi2.ppf(0.95, 3)) < 0.99
     assert 0.91 < np.mean(in_range) < 0.99
