@@ -13,6 +13,7 @@ from tapreach.robot.clock import SECOND
 from tapreach.robot.messages import Frame
 from tapreach.server.messages import GuideView, TaskView
 from tapreach.tasks.floor_guess import floor_guess
+from tapreach.tasks.guide import Guide
 from tapreach.tasks.guide_state import GuideKind, GuideState
 from tapreach.tasks.locate import LocateTask
 from tapreach.tasks.runner import TaskProgress, TaskRunner
@@ -21,7 +22,6 @@ from tapreach.tasks.task import Compute, Tap, TaskContext, TaskReport
 
 if TYPE_CHECKING:
     from tapreach.server.station import Station
-    from tapreach.tasks.guide import Guide
 
 CAMERA_SILENCE_NS = 2 * SECOND
 
@@ -105,8 +105,6 @@ class TaskDesk:
 
     async def open_guide(self, kind: str, session_id: int) -> None:
         """Begin a guide, in the place of one that is open."""
-        from tapreach.tasks.guide import Guide
-
         await self.end_guide()
         target_id = self._station.targets.new_id()
         self._guide_owner_id = session_id
@@ -115,7 +113,7 @@ class TaskDesk:
         )
         await self._guide.start()
 
-    def guide_of(self, session_id: int) -> "Guide":
+    def guide_of(self, session_id: int) -> Guide:
         """Return the guide that this session has open. Raises InputError."""
         if self._guide is None or self._guide_owner_id != session_id:
             raise InputError("no guide is open: start one first")
