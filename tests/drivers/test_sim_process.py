@@ -127,6 +127,21 @@ def test_close_ends_the_process_and_may_be_repeated() -> None:
     asyncio.run(scenario())
 
 
+def test_cancelled_start_leaves_no_process() -> None:
+    async def scenario() -> None:
+        robot = SimRobot(ROBOT, HALL, CLOCK)
+        start = asyncio.create_task(robot.connect())
+        while robot.process_id is None:
+            await asyncio.sleep(0)
+        pid = robot.process_id
+        start.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await start
+        assert not is_alive(pid)
+
+    asyncio.run(scenario())
+
+
 HOST = """
 import asyncio, sys
 sys.path.insert(0, {tests!r})

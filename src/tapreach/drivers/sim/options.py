@@ -22,6 +22,19 @@ class SimulationSection(BaseModel):
     faults: dict[str, Any] = {}
 
 
+def simulation_section(description: RobotDescription) -> SimulationSection:
+    """Return the table [simulation], checked. Raises ConfigError naming the known keys."""
+    try:
+        return SimulationSection.model_validate(description.simulation)
+    except ValidationError as error:
+        fault = error.errors()[0]
+        key = ".".join(str(part) for part in fault["loc"])
+        known = ", ".join(SimulationSection.model_fields)
+        raise ConfigError(
+            f"[simulation] of the robot file: {key}: {fault['msg']}; known keys: {known}"
+        ) from None
+
+
 def resolve_scene(
     description: RobotDescription,
     scene: str | None = None,
@@ -32,13 +45,7 @@ def resolve_scene(
 
     A seed makes a random scene of its own and wins over a scene. Raises ConfigError.
     """
-    try:
-        section = SimulationSection.model_validate(description.simulation)
-    except ValidationError as error:
-        known = ", ".join(SimulationSection.model_fields)
-        raise ConfigError(
-            f"[simulation] of the robot file: {error.errors()[0]['msg']}; known keys: {known}"
-        ) from None
+    section = simulation_section(description)
     if seed is None and scene is None:
         seed = section.seed
     chosen = load_scene(scene or section.scene) if seed is None else random_scene(seed)

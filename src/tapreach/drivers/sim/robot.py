@@ -105,7 +105,7 @@ class SimRobot:
         except TimeoutError:
             await self.close()
             raise errors.DriverError(f"the simulator did not start within {START_TIMEOUT_S:.0f} s") from None
-        except errors.TapreachError:
+        except BaseException:  # also a cancelled start leaves no process behind
             await self.close()
             raise
 
@@ -153,7 +153,11 @@ class SimRobot:
             if not packet:
                 self._lose(self._ending())
                 return
-            self._take(decode(packet))
+            try:
+                self._take(decode(packet))
+            except errors.DriverError as error:
+                self._lose(str(error))
+                return
 
     def _take(self, message: Message) -> None:
         if isinstance(message, Telemetry):
@@ -178,7 +182,12 @@ class SimRobot:
             if self._frames:
                 asyncio.get_running_loop().remove_reader(self._frames.fileno())
             return
-        for captured_ns, jpeg in self._parser.feed(data)[-1:]:
+        try:
+            newest = self._parser.feed(data)[-1:]
+        except errors.DriverError as error:
+            self._lose(str(error))
+            return
+        for captured_ns, jpeg in newest:
             self.frames.take(captured_ns, jpeg)
 
     def _lose(self, reason: str, kind: str = "LinkLost") -> None:
