@@ -40,7 +40,8 @@ class MjpegPeer:
 
     async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """Answer one request."""
-        with contextlib.suppress(ConnectionError, asyncio.IncompleteReadError):
+        # Cancelled at the end of the bench: asyncio's streams would print it as an error.
+        with contextlib.suppress(ConnectionError, asyncio.IncompleteReadError, asyncio.CancelledError):
             path = (await reader.readuntil(b"\r\n\r\n")).split(b" ", 2)[1]
             if path == b"/stream.mjpg":
                 await self._stream(writer)

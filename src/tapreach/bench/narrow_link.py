@@ -22,10 +22,10 @@ async def narrow_link(target_port: int, bytes_per_second: float, clock: Clock) -
         task = asyncio.current_task()
         assert task is not None
         busy.add(task)
-        try:
+        # Cancelled at the end of the block: asyncio's streams would print it as an error.
+        with contextlib.suppress(ConnectionError, asyncio.CancelledError):
             await _join(client_in, client_out, target_port, bytes_per_second, clock)
-        finally:
-            busy.discard(task)
+        busy.discard(task)
 
     server = await asyncio.start_server(serve, "127.0.0.1", 0, limit=_BUFFER)
     try:

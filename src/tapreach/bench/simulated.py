@@ -56,9 +56,7 @@ class SimulatedRun:
 async def simulated_run(clock: Clock) -> AsyncIterator[SimulatedRun]:
     """Run `tapreach run --robot sim` while the block runs; every process of it is gone afterwards."""
     begun_ns = clock.now_ns()
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, *_COMMAND, stdout=asyncio.subprocess.PIPE, start_new_session=True
-    )
+    process = await asyncio.create_subprocess_exec(sys.executable, *_COMMAND, stdout=asyncio.subprocess.PIPE)
     members: list[ProcessId] = []
     try:
         port = await asyncio.wait_for(_announced_port(process), _START_SECONDS)
