@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -181,6 +182,15 @@ def _arm_at(forward: float, up: float, claw: float) -> ArmPose:
     upper = math.atan2(z, x) + math.atan2(b * math.sin(bend), a + b * math.cos(bend))
     shoulder = math.pi / 2 - upper
     return ArmPose(0.0, shoulder, bend - upper - shoulder, claw)
+
+
+def test_broken_physics_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)  # MuJoCo writes its log where it stands
+    rig = Rig()
+    assert rig.world.warnings == []
+    rig.world.data.qvel[0] = math.nan
+    rig.world.step()
+    assert any("the physics reported" in warning for warning in rig.world.warnings)
 
 
 def test_a_minute_of_rough_driving_leaves_the_physics_sound() -> None:

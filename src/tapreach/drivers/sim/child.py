@@ -14,6 +14,8 @@ import sys
 # Before OpenGL is loaded: one drawing thread leaves a core to physics and server, at the same picture rate.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 
+import mujoco
+
 from tapreach.drivers.sim.camera import SimCamera
 from tapreach.drivers.sim.child_frames import FrameLoop
 from tapreach.drivers.sim.child_physics import PhysicsLoop
@@ -53,6 +55,8 @@ def _simulate(control: socket.socket, frames: socket.socket) -> None:
     scene = Scene.model_validate_json(setup.scene)
     description = RobotDescription.model_validate_json(setup.description)
     faults = SimFaults.model_validate_json(setup.faults)
+    # The host is told by World.warnings; MuJoCo would leave a log file in the user's folder.
+    mujoco.set_mju_user_warning(lambda text: None)
     world = World(scene, description, faults, setup.seed)
     picture = description.camera
     renderer = Renderer(world.model, picture.width, picture.height, setup.opengl)
