@@ -39,8 +39,11 @@ OPERATOR = 1
 CAMERA_SILENCE_NS = 2 * SECOND
 
 
-def sim_description() -> RobotDescription:
-    return load_robot(ROOT / "robots" / "sim.toml")
+def sim_description(rate_hz: float = 10.0) -> RobotDescription:
+    """The simulated robot with a slower camera: drawing pictures is what takes the time."""
+    description = load_robot(ROOT / "robots" / "sim.toml")
+    camera = description.camera.model_copy(update={"rate_hz": rate_hz})
+    return description.model_copy(update={"camera": camera})
 
 
 def bare_context() -> TaskContext:
@@ -72,11 +75,12 @@ class Frames:
         self._clock = clock
         self._arrived = asyncio.Event()
         self.is_silent = False
+        self.change: Callable[[Frame], Frame] = lambda frame: frame
         robot.frames.subscribe(self._take)
 
     def _take(self, frame: Frame) -> None:
         if not self.is_silent:
-            self.store.add(frame)
+            self.store.add(self.change(frame))
             self._arrived.set()
 
     async def next_frame(self, frame_id: int) -> Frame:

@@ -6,10 +6,9 @@
   wheels before it cancels. The context's `report` is set by the runner.
 - `locate.LocateTask(tap, target_id)`: shows the target through `context.show_target` as it goes.
 - `floor_guess.floor_guess(context, tap, target_id) -> Target`: at once, no motion.
-- `guide.Guide(context, runner, kind, owner, on_change)`: `start()`, `tap(tap)`, `value(name, value)`,
-`act(name)`,
-  `end()`, and `state`, a `GuideState` with the fields of the page's guide message. `on_change` is called
-  after every change; `end` stops what the guide had the robot do.
+- `guide.Guide(context, runner, kind, owner, target_id, on_change)`: async `start()`, `tap(tap)`,
+  `value(name, value)`, `act(name)`, `end()`; `state` is a `GuideState` with the fields of the page's guide
+  message. `on_change(state)` is called after every change; `end` stops what the guide had the robot do.
 - `compute.ComputeProcess`: `start()`, `close()`; is the context's `compute`. `compute.InlineCompute` for
 tests. - Every refusal is a TapreachError whose text is a sentence to show.
 """

@@ -26,7 +26,10 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides.
     calls, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    serve(calls, answers)
+    try:
+        serve(calls, answers)
+    except BrokenPipeError:
+        os._exit(0)  # the parent has gone in the middle of an answer: nobody is left to tell
 
 
 def die_with_parent() -> None:

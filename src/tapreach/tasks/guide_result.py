@@ -6,6 +6,7 @@ from math import degrees
 from tapreach.estimation.point_estimate import PointEstimate
 from tapreach.estimation.rotation_centre import ColumnShift, rotation_centre
 from tapreach.estimation.two_tap import TwoTapEstimate, two_tap_from_pixels
+from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.config import RobotDescription
@@ -112,7 +113,7 @@ def rotation_centre_text(progress: GuideProgress, description: RobotDescription)
         shifts.append(shift)
     if shifts[0].depth >= shifts[1].depth:
         return "No answer: the near point lies farther away than the far one; tap the near one first."
-    found = rotation_centre(description.camera.model(), shifts[0], shifts[1])
+    found = rotation_centre(_level_camera(description), shifts[0], shifts[1])
     if found is None:
         return "No answer: the points are too alike in distance, or the robot did not turn."
     lever, sigma = 100.0 * found.lever, 100.0 * found.lever_sigma
@@ -132,7 +133,22 @@ def _shift(progress: GuideProgress, key: str, description: RobotDescription) -> 
         return None
     depth = float(guess.point_in_base[0]) - description.camera.mount.forward
     depth_sigma = float(guess.point_cov_in_base[0, 0]) ** 0.5
-    return ColumnShift(before.pixel.u, after.pixel.u, max(depth, 0.01), depth_sigma)
+    columns = [_level_column(sighting, description) for sighting in (before, after)]
+    return ColumnShift(columns[0], columns[1], max(depth, 0.01), depth_sigma)
+
+
+def _level_camera(description: RobotDescription) -> Camera:
+    """Return the robot's camera without distortion; what looks through it is taken to look level."""
+    camera = description.camera.model()
+    return Camera(camera.size, camera.fx, camera.fy, camera.cx, camera.cy)
+
+
+def _level_column(sighting: Sighting, description: RobotDescription) -> float:
+    """Return the column [px] at which a camera that looks level and straight ahead would see the place."""
+    (direction,) = description.camera.model().unproject([sighting.pixel.to_array()])
+    ahead, left, _ = description.camera.mount.base_from_camera().rotation.apply(direction)
+    level = _level_camera(description)
+    return level.cx - level.fx * float(left / ahead)
 
 
 def _xyz(point: FloatArray) -> str:

@@ -104,10 +104,17 @@ class _Locating:
             )
 
     async def _refresh(self) -> None:
-        """Renew the shown estimate on the way, a few times a second."""
-        now_ns = self._context.clock.now_ns()
-        if now_ns - self._shown_ns >= _SHOW_EVERY_NS:
+        """Renew what is shown on the way, a few times a second.
+
+        The estimate only once it is sharp: before, its range interval takes longer to compute than a frame
+        lasts.
+        """
+        if self._context.clock.now_ns() - self._shown_ns < _SHOW_EVERY_NS:
+            return
+        if self._estimate is not None and self._estimate.is_ellipsoid_fair:
             await self._renew(with_advice=False)
+        else:
+            self._show()
 
     async def _renew(self, with_advice: bool) -> None:
         sightings = self._sightings()
