@@ -64,10 +64,10 @@ class World:
     @property
     def warnings(self) -> list[str]:
         """Return what MuJoCo warned of so far: then the state is not to be trusted."""
+        counts = self.data.warning.number
         return [
-            f"the physics reported {mujoco.mjtWarning(index).name} ({warning.number} times)"
-            for index, warning in enumerate(self.data.warning)
-            if warning.number
+            f"the physics reported {mujoco.mjtWarning(int(index)).name} ({counts[index]} times)"
+            for index in np.flatnonzero(counts)
         ]
 
     def drive(self, twist: Twist) -> None:
