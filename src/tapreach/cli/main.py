@@ -5,6 +5,7 @@ import sys
 import typer
 from rich.console import Console
 
+from tapreach.cli.bench import bench
 from tapreach.cli.estimate import estimate
 from tapreach.cli.run import run
 from tapreach.cli.two_tap import two_tap
@@ -21,6 +22,7 @@ app = typer.Typer(
 app.command()(run)
 app.command("two-tap")(two_tap)
 app.command()(estimate)
+app.add_typer(bench)
 
 
 @app.callback()
