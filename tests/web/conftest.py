@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
-
 from tests.web.protocol_server import ProtocolServer
 
 CHROMIUM = os.environ.get("TAPREACH_CHROMIUM") or shutil.which("chromium") or "/usr/bin/chromium"
@@ -35,7 +34,11 @@ def open_page(browser: Browser, server: ProtocolServer) -> Iterator[OpenPage]:
     contexts, troubles = [], []
 
     def open_page(
-        size: tuple[int, int] = TABLET, scale: float = 1, is_ready: bool = True, hints: str = "3", url: str = ""
+        size: tuple[int, int] = TABLET,
+        scale: float = 1,
+        is_ready: bool = True,
+        hints: str = "3",
+        url: str = "",
     ) -> Page:
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]}, device_scale_factor=scale, reduced_motion="reduce"
@@ -60,4 +63,4 @@ def open_page(browser: Browser, server: ProtocolServer) -> Iterator[OpenPage]:
 def wait_ready(page: Page) -> None:
     """Wait until the page may drive on sight."""
     page.wait_for_selector("body:not(.cannot-drive)")
-    page.wait_for_function("document.getElementById('lease-who').textContent === 'You'")
+    page.wait_for_selector("#lease-who:text-is('You')")

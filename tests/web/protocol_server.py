@@ -31,9 +31,28 @@ def first_state() -> Json:
         "server_ns": 0,
         "sent": {"linear": 0.0, "angular": 0.0},
         "limited_by": "",
-        "odometry": {"x": 0.31, "y": -0.02, "heading_deg": 12.4, "distance": 0.4, "linear": 0.0, "angular": 0.0},
-        "arm": {"rotation_deg": 0.0, "shoulder_deg": 90.0, "elbow_deg": 0.0, "claw_mm": 40.0, "is_moving": False},
-        "lease": {"holder_id": None, "holder_name": "", "is_idle": False, "asked_by_id": None, "asked_by_name": ""},
+        "odometry": {
+            "x": 0.31,
+            "y": -0.02,
+            "heading_deg": 12.4,
+            "distance": 0.4,
+            "linear": 0.0,
+            "angular": 0.0,
+        },
+        "arm": {
+            "rotation_deg": 0.0,
+            "shoulder_deg": 90.0,
+            "elbow_deg": 0.0,
+            "claw_mm": 40.0,
+            "is_moving": False,
+        },
+        "lease": {
+            "holder_id": None,
+            "holder_name": "",
+            "is_idle": False,
+            "asked_by_id": None,
+            "asked_by_name": "",
+        },
         "emergency_stop": "",
         "health": "running",
         "health_reason": "",
@@ -215,7 +234,13 @@ class ProtocolServer:
 
     def _welcome(self, session: int, seq: int) -> Json:
         width, height = self.size
-        camera = {"width": width, "height": height, "fx": 0.9 * width, "fy": 0.9 * width, "cx": width / 2 - 0.5}
+        camera = {
+            "width": width,
+            "height": height,
+            "fx": 0.9 * width,
+            "fy": 0.9 * width,
+            "cx": width / 2 - 0.5,
+        }
         camera |= {"cy": height / 2 - 0.5, "pitch_deg": 18.0, "rate_hz": 30.0}
         return messages.Welcome.model_validate(
             {"seq": seq, "session_id": session, "robot": "Rover", "camera": camera}

@@ -23,13 +23,15 @@ def room(width: int = 640, height: int = 480) -> Image:
     wall = np.full_like(floor, (150, 152, 148))
     picture = np.where((v < horizon)[..., None], wall, floor * (0.65 + 0.35 * v / height)[..., None])
     image = picture.astype(np.uint8)
-    cv2.rectangle(image, (width // 2 + 40, height // 4), (width // 2 + 100, height // 2 + 20), (40, 36, 200), -1)
+    cv2.rectangle(
+        image, (width // 2 + 40, height // 4), (width // 2 + 100, height // 2 + 20), (40, 36, 200), -1
+    )
     cv2.ellipse(image, (width // 2 + 70, height // 4), (30, 9), 0, 0, 360, (200, 205, 215), -1)
     return image
 
 
 def stamped_jpeg(background: Image, frame_id: int) -> bytes:
-    """Return the picture as JPEG with the low bits of `frame_id` as black and white blocks at the top left."""
+    """Return the picture as JPEG, the low bits of `frame_id` as black and white blocks at the top left."""
     image = background.copy()
     for bit in range(ID_BITS):
         value = 255 if frame_id >> bit & 1 else 0
@@ -37,7 +39,9 @@ def stamped_jpeg(background: Image, frame_id: int) -> bytes:
     return cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, 85])[1].tobytes()
 
 
-def video_message(frame_id: int, captured_ns: int, jpeg: bytes, size: tuple[int, int], markers: list[object]) -> bytes:
+def video_message(
+    frame_id: int, captured_ns: int, jpeg: bytes, size: tuple[int, int], markers: list[object]
+) -> bytes:
     """Return a message of the video socket."""
     meta = json.dumps({"base": [0.0, 0.0, 0.0], "markers": markers}).encode()
     header = HEADER.pack(b"TRV1", frame_id, captured_ns, captured_ns, size[0], size[1], len(meta))

@@ -1,15 +1,16 @@
-"""Every screen in every state: nothing scrolls, nothing overlaps, everything is large enough, named and legible."""
+"""Every screen in every state: nothing scrolls or overlaps; all is large enough, named and legible."""
 
 import re
 from itertools import combinations
 
 import pytest
-
 from tests.web.protocol_server import WEB
 from tests.web.test_panels import GUIDE, MARKER, TARGET
 
 SCREENS = [(1024, 768), (1180, 820), (390, 844), (844, 390), (1440, 900)]
-LONG = "Turn the robot left by 10 to 15 degrees about its own axis. The target moves right of the centre line."
+LONG = (
+    "Turn the robot left by 10 to 15 degrees about its own axis. The target moves right of the centre line."
+)
 LEAST_PX = 48
 
 # Controls a finger can reach now: in their own scroller's window, and not under something else.
@@ -106,8 +107,8 @@ def hinted(page, _server):
 
 
 STATES = [
-    nothing, with_target, with_task, with_guide, with_captures, with_steps, with_menu, with_keys, paused, stopped,
-    frozen, disconnected, asked, hinted,
+    nothing, with_target, with_task, with_guide, with_captures, with_steps, with_menu, with_keys,
+    paused, stopped, frozen, disconnected, asked, hinted,
 ]  # fmt: skip
 
 
@@ -157,7 +158,9 @@ def test_the_guide_leaves_the_pictures_centre_free(server, open_page, screen):
     canvas = page.locator("#picture").bounding_box()
     guide = page.locator("#guide").bounding_box()
     x, y = canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2
-    inside = guide["x"] <= x <= guide["x"] + guide["width"] and guide["y"] <= y <= guide["y"] + guide["height"]
+    inside = (
+        guide["x"] <= x <= guide["x"] + guide["width"] and guide["y"] <= y <= guide["y"] + guide["height"]
+    )
     assert not inside
     assert page.evaluate("([x, y]) => document.elementFromPoint(x, y).id", [x, y]) == "picture"
     acts = page.locator("#guide-acts").bounding_box()

@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page
-
 from tests.web.protocol_server import ProtocolServer
 from tests.web.synthetic_video import video_message
 
@@ -51,7 +50,9 @@ def test_a_point_beside_the_picture_is_none(run):
 
 
 def test_video_header_is_read_to_the_last_field(run):
-    message = video_message(70_000, 1_234_567_890_123_456_789, b"\xff\xd8jpeg", (960, 720), [{"target_id": 3}])
+    message = video_message(
+        70_000, 1_234_567_890_123_456_789, b"\xff\xd8jpeg", (960, 720), [{"target_id": 3}]
+    )
     body = """const f = m.parseVideoMessage(new Uint8Array(given).buffer, 5);
       return {...f, jpeg: Array.from(new Uint8Array(await f.jpeg.arrayBuffer())), type: f.jpeg.type};"""
     frame = run("net/video_message.js", body, list(message))
@@ -87,7 +88,8 @@ def test_ring_keeps_ten_seconds_and_finds_the_nearest(run):
       for (let i = 0; i <= 600; i++) ring.push({frameId: i, capturedMs: i * 33});
       const kept = ring.snapshot();
       return [kept[0].capturedMs >= 600 * 33 - 10000, kept.length,
-        m.frameAt(kept, 0).frameId, m.frameAt(kept, 1000).frameId, m.frameAt(kept, 1e9).frameId === kept[0].frameId,
+        m.frameAt(kept, 0).frameId, m.frameAt(kept, 1000).frameId,
+        m.frameAt(kept, 1e9).frameId === kept[0].frameId,
         m.frameAt([], 0)];"""
     assert run("view/frame_ring.js", body) == [True, 304, 600, 570, True, None]
 

@@ -23,7 +23,14 @@ TARGET = {
     "is_following": True,
 }
 MARKER = {"target_id": 1, "u": 180.0, "v": 122.0, "inside": True, "state": "followed"}
-GUIDE = {"type": "guide", "kind": "two_tap", "step": 4, "steps": 6, "title": "Turn left", "acts": ["turn", "next"]}
+GUIDE = {
+    "type": "guide",
+    "kind": "two_tap",
+    "step": 4,
+    "steps": 6,
+    "title": "Turn left",
+    "acts": ["turn", "next"],
+}
 CYAN = """() => { const c = document.getElementById('picture'); const d = c.getContext('2d')
   .getImageData(0, 0, c.width, c.height).data; let n = 0, x = 0, y = 0;
   for (let i = 0; i < d.length; i += 4) if (d[i] < 130 && d[i+1] > 180 && d[i+2] > 220) {
@@ -73,13 +80,16 @@ def test_the_marker_stands_where_the_frames_meta_puts_it(server, open_page):
     server.push(TARGET)
     centres = []
     for u in (180.0, 420.0):
-        server.markers = [MARKER | {"u": u, "region": [[u - 20, 90], [u + 20, 90], [u + 20, 150], [u - 20, 150]]}]
+        server.markers = [
+            MARKER | {"u": u, "region": [[u - 20, 90], [u + 20, 90], [u + 20, 150], [u - 20, 150]]}
+        ]
         seen = len(server.acked)
         server.wait_until(lambda seen=seen: len(server.acked) > seen + 3)
         count, x, _ = page.evaluate(CYAN)
         assert count > 100
         centres.append(x)
-    scale = min(1024 / 640, (768 - 60 - 72) / 480)
+    box = page.locator("#picture").bounding_box()
+    scale = min(box["width"] / 640, box["height"] / 480)
     assert centres[1] - centres[0] == pytest.approx(240 * scale, abs=4)
 
 
@@ -139,7 +149,7 @@ def test_typing_a_number_drives_nothing_and_a_value_under_the_fingers_stays(serv
     page.keyboard.press("Control+a")
     page.keyboard.type("15")
     server.push(GUIDE | {"theta_deg": 2.0, "hint": "on"})
-    page.wait_for_selector("#guide-hint:text-is('on')")
+    page.wait_for_selector("#guide-hint:text-is('On')")
     assert page.locator("#guide-theta").input_value() == "15"
     assert server.heard("drive") == []
     page.keyboard.press("Escape")
@@ -149,7 +159,8 @@ def test_typing_a_number_drives_nothing_and_a_value_under_the_fingers_stays(serv
 def test_captures_are_listed_downloaded_and_deleted_after_a_question(server, open_page):
     names = [f"20260131-12000{i}-f{i}" for i in (1, 2)]
     server.captures = [
-        {"id": name, "taken_at": "2026-01-31T12:00:01", "width": 640, "height": 480, "frame_id": 1} for name in names
+        {"id": name, "taken_at": "2026-01-31T12:00:01", "width": 640, "height": 480, "frame_id": 1}
+        for name in names
     ]
     page = open_page()
     page.wait_for_selector("#captures-count:text-is('2')")

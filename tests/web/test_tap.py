@@ -92,7 +92,9 @@ def test_purpose_is_locate_until_floor_is_chosen(server, open_page):
 
 def test_a_tap_the_guide_waits_for_goes_to_the_guide(server, open_page):
     page = open_page()
-    server.push({"type": "guide", "kind": "two_tap", "step": 2, "steps": 6, "title": "Tap", "wants_tap": True})
+    server.push(
+        {"type": "guide", "kind": "two_tap", "step": 2, "steps": 6, "title": "Tap", "wants_tap": True}
+    )
     page.wait_for_selector("#guide:not([hidden])")
     page.mouse.click(512, 400)
     assert server.wait_for("guide_tap")["frame_id"] >= 1

@@ -2,7 +2,7 @@
  * A guided procedure beside the picture: what to do now, what helps, what the robot can do itself, the two
  * values that may be typed, and the result.
  */
-import { number } from "../view/words.js";
+import { number, sentence } from "../view/words.js";
 import { byId, make, setText } from "./dom.js";
 
 /** @typedef {import("../net/messages.js").GuideView} GuideView */
@@ -64,7 +64,7 @@ export class Guide {
     setText(byId("guide-title"), view.title);
     setText(byId("guide-step"), `${view.step} of ${view.steps}`);
     setText(byId("guide-instruction"), view.instruction);
-    setText(byId("guide-hint"), view.hint);
+    setText(byId("guide-hint"), sentence(view.hint));
     setText(byId("guide-result"), view.result);
     this.showFields(view);
     this.showActs(view.acts);

@@ -1,5 +1,5 @@
 /** The newest target in numbers: distance, interval, X, Y, Z with their uncertainty, reason and advice. */
-import { length, number } from "../view/words.js";
+import { length, number, sentence } from "../view/words.js";
 import { byId, make, setText } from "./dom.js";
 
 /** @typedef {import("../net/messages.js").TargetView} TargetView */
@@ -38,8 +38,8 @@ export class TargetCard {
     setText(byId("card-title"), TITLES[target.source]);
     setText(byId("card-range"), target.range === null ? "No position" : length(target.range));
     setText(byId("card-interval"), intervalWords(target));
-    setText(byId("card-reason"), target.reason);
-    setText(byId("card-advice"), target.advice);
+    setText(byId("card-reason"), sentence(target.reason));
+    setText(byId("card-advice"), sentence(target.advice));
     byId("card-xyz").replaceChildren(...coordinates(target));
   }
 }

@@ -1,4 +1,5 @@
 /** The running task: phase, progress, and a Cancel that ends it at once. */
+import { sentence } from "../view/words.js";
 import { byId, setText } from "./dom.js";
 
 /** @typedef {import("../net/messages.js").TaskView} TaskView */
@@ -20,7 +21,7 @@ export class TaskPanel {
     const wasRunning = this.task?.task_id === task.task_id && this.task.state === "running";
     this.task = task;
     byId("task").hidden = task.state !== "running";
-    setText(byId("task-phase"), sentence(task.phase || task.kind));
+    setText(byId("task-phase"), sentence((task.phase || task.kind).replaceAll("_", " ")));
     setText(byId("task-message"), task.message);
     byId("task-progress").setAttribute("value", String(task.progress));
     if (wasRunning && task.state !== "running") this.tellEnd(task);
@@ -37,10 +38,4 @@ export class TaskPanel {
     if (task.state === "cancelled") this.toast.tell(task.message || "Cancelled. The robot stands still.");
     if (task.state === "failed") this.toast.tell(task.message || "This did not work.", "bad");
   }
-}
-
-/** @param {string} phase such as "turning_left" */
-function sentence(phase) {
-  const words = phase.replaceAll("_", " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
 }

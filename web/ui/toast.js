@@ -1,4 +1,5 @@
 /** One short sentence at a time, gone by itself. */
+import { sentence } from "../view/words.js";
 import { byId, setText } from "./dom.js";
 
 const SHOWN_MS = 4500;
@@ -9,10 +10,9 @@ export class Toast {
     this.timer = 0;
   }
 
-  /** @param {string} sentence @param {"bad" | "plain"} tone */
-  tell(sentence, tone = "plain") {
-    const text = sentence.charAt(0).toUpperCase() + sentence.slice(1);
-    setText(this.element, text);
+  /** @param {string} words @param {"bad" | "plain"} tone */
+  tell(words, tone = "plain") {
+    setText(this.element, sentence(words));
     this.element.dataset.tone = tone;
     this.element.hidden = false;
     clearTimeout(this.timer);

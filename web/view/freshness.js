@@ -48,7 +48,7 @@ export class Freshness {
     if (isFrozen === facts.isFrozen && facts.pictureAgeMs !== null && nowMs - this.toldMs < TELL_MS) return;
     this.toldMs = nowMs;
     // Between two frames of a live picture its age just saws up and down: the age when painted says more.
-    const pictureAgeMs = nowMs - this.paintedMs < FRESH_MS ? this.ageAtPaintMs : ageMs;
+    const pictureAgeMs = !isFrozen && nowMs - this.paintedMs < FRESH_MS ? this.ageAtPaintMs : ageMs;
     this.situation.learn({ isFrozen, pictureAgeMs });
   }
 }

@@ -14,6 +14,11 @@ export function number(value, digits) {
   return value < 0 && Number(text) !== 0 ? MINUS + text : text;
 }
 
+/** @param {string} words @returns {string} with a capital first letter, as a sentence begins */
+export function sentence(words) {
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
 /** @param {number} ms @returns {string} */
 export function duration(ms) {
   return ms < 1000 ? `${number(ms, 0)} ms` : `${number(ms / 1000, 1)} s`;
@@ -37,8 +42,7 @@ export function motion(linear, angular) {
   if (Math.abs(angular) >= STILL_ANGULAR) {
     parts.push(`${angular > 0 ? "left" : "right"} ${number((Math.abs(angular) * 180) / Math.PI, 0)}°/s`);
   }
-  const text = parts.join(", ") || "still";
-  return text.charAt(0).toUpperCase() + text.slice(1);
+  return sentence(parts.join(", ") || "still");
 }
 
 /**
