@@ -92,9 +92,9 @@ class Follower:
                 await after_each()
             return moving.result()
         finally:
-            if not moving.done():
-                moving.cancel()
-                await asyncio.wait({moving})
+            moving.cancel()
+            # Gathering takes note of its error too, when the motion was interrupted before this was cancelled.
+            await asyncio.gather(moving, return_exceptions=True)
 
     async def look(self, frames: int = 4) -> Sighting | None:
         """Watch `frames` frames at rest; make one sighting of them, appended, or return None when not seen.
