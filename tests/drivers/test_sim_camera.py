@@ -188,6 +188,7 @@ def test_state_between_snapshots_is_interpolated() -> None:
 def test_shadows_are_given_up_before_the_rate_and_come_back_late() -> None:
     policy = ShadowPolicy(1 / 30)
     assert all(policy.note(0.02) for _ in range(100))
+    assert policy.note(2.0), "one hiccup is no reason"
     assert not [policy.note(0.05) for _ in range(60)][-1]
     assert not [policy.note(0.008) for _ in range(250)][-1], "not at once"
     assert [policy.note(0.008) for _ in range(200)][-1]

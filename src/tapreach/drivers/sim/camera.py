@@ -117,7 +117,8 @@ class ShadowPolicy:
 
     def note(self, took_s: float) -> bool:
         """Take the time that the last picture cost and return whether the next one has shadows."""
-        self._mean_s += 0.1 * (took_s - self._mean_s)
+        # One hiccup counts for two periods at most: it takes a few slow pictures in a row.
+        self._mean_s += 0.15 * (min(took_s, 2.0 * self._period_s) - self._mean_s)
         self._spare = self._spare + 1 if self._mean_s < 0.3 * self._period_s else 0
         if self.shadows and self._mean_s > 0.9 * self._period_s:
             self.shadows = False
