@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _CANDIDATES = ("chromium", "google-chrome", "google-chrome-stable", "chromium-browser")
 _PROBE = Path(__file__).with_name("browser_probe.js")
 _EXCHANGES = 100
+_PATIENCE_MS = 60_000
 
 
 class BrowserFailed(TapreachError):
@@ -62,6 +63,7 @@ async def fresh_page(browser: "Browser", width: int = 1280, height: int = 800) -
     # The probe's clock socket is of another origin, which the operator page's policy forbids.
     context = await browser.new_context(viewport={"width": width, "height": height}, bypass_csp=True)
     try:
+        context.set_default_timeout(_PATIENCE_MS)
         page = await context.new_page()
         await page.add_init_script(path=_PROBE)
         yield page

@@ -10,7 +10,7 @@ from typing import Any
 
 from tapreach.errors import SetupError
 
-_START_SECONDS = 30.0
+_START_SECONDS = 60.0
 _END_SECONDS = 5.0
 
 

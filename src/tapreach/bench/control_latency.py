@@ -30,7 +30,7 @@ async def watching_operator(port: int, clock: Clock) -> AsyncIterator[tuple[Cont
     viewing = Viewing()
     watching = asyncio.create_task(view(port, viewing, clock))
     try:
-        await asyncio.wait_for(viewing.first.wait(), 10)
+        await asyncio.wait_for(viewing.first.wait(), 30)
         async with operator(port, clock) as client:
             yield client, viewing
     finally:

@@ -7,8 +7,7 @@ import argparse
 import asyncio
 
 from tapreach.bench.child import stdin_lines, tell_parent
-from tapreach.bench.control_client import operator
-from tapreach.bench.video_client import Viewing, view
+from tapreach.bench.control_latency import watching_operator
 from tapreach.robot.clock import MS, Clock, MonotonicClock
 from tapreach.robot.messages import Twist
 
@@ -16,17 +15,15 @@ PERIOD_NS = 50 * MS
 
 
 async def hold_drive(port: int, twist: Twist, clock: Clock) -> None:
-    """Drive until cancelled, looking at the video as an operator does."""
-    viewing = Viewing()
-    watching = asyncio.create_task(view(port, viewing, clock))
-    await viewing.first.wait()
-    async with operator(port, clock) as client:
+    """Drive until cancelled, looking at the video as an operator does; tell when ready, then each message."""
+    async with watching_operator(port, clock) as (client, viewing):
         tell_parent({"port": port})
         while True:
-            answer = await client.drive(twist, viewing.arrivals[-1].frame_id)
-            tell_parent({"sent_ns": answer.sent_ns, "is_ok": answer.is_ok})
-            await clock.sleep_until(answer.sent_ns + PERIOD_NS)
-    watching.cancel()
+            # Told before it leaves: halted in between, the parent still knows of the last message.
+            sent_ns = clock.now_ns()
+            tell_parent({"sent_ns": sent_ns})
+            await client.drive(twist, viewing.arrivals[-1].frame_id)
+            await clock.sleep_until(sent_ns + PERIOD_NS)
 
 
 async def _run(port: int, linear: float) -> None:

@@ -32,7 +32,7 @@ class Wheels:
         self._changed.set()
 
     async def next(
-        self, is_wanted: Callable[[Twist], bool], since_ns: int, seconds: float = 5.0
+        self, is_wanted: Callable[[Twist], bool], since_ns: int, seconds: float = 15.0
     ) -> SentTwist:
         """Return the first twist of that kind sent at or after `since_ns`. TimeoutError when none comes."""
         async with asyncio.timeout(seconds):
