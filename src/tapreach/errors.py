@@ -1,17 +1,17 @@
 """One tree of errors; every message names the value that was wrong and what would be right.
 
-    TapreachError
-    ├── InputError          a number, pixel or argument that cannot be used
-    ├── ConfigError         a robot or scene file that cannot be used; names file and line
-    ├── FrameError
-    │   ├── FrameUnknown    no frame of this id was ever stored
-    │   └── FrameExpired    the frame was stored and has been dropped since
-    ├── PoseError
-    │   ├── PoseExpired     the pose at this time was known and has been dropped since
-    │   └── PoseNotYetKnown the time lies after the newest pose
-    ├── DriverError         the robot or its link does not do what was asked
-    │   └── LinkLost        the link to the robot is gone
-    └── SetupError          something is missing on this machine; says how to get it
+TapreachError
+├── InputError          a number, pixel or argument that cannot be used
+├── ConfigError         a robot or scene file that cannot be used; names file and line
+├── FrameError
+│   ├── FrameUnknown    no frame of this id was ever stored
+│   └── FrameExpired    the frame was stored and has been dropped since
+├── PoseError
+│   ├── PoseExpired     the pose at this time was known and has been dropped since
+│   └── PoseNotYetKnown the time lies after the newest pose
+├── DriverError         the robot or its link does not do what was asked
+│   └── LinkLost        the link to the robot is gone
+└── SetupError          something is missing on this machine; says how to get it
 """
 
 

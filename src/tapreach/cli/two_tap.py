@@ -107,8 +107,8 @@ def _print_focal_table(console: Console) -> None:
     published = sum(row.published_focal_cm for row in TABLE_1) / len(TABLE_1)
     last = TABLE_1[-1]
     console.print(
-        f"Mean f: {computed:.2f} cm from the rows' inputs, {published:.2f} cm from the printed column. The "
-        f"last row gives {last.focal_cm:.2f} from its own inputs, not the printed {last.published_focal_cm:.2f}."
+        f"Mean f: {computed:.2f} cm from the rows' inputs, {published:.2f} cm from the printed column. "
+        f"The last row gives {last.focal_cm:.2f} from its own inputs, not the printed {last.published_focal_cm:.2f}."
     )
 
 
@@ -141,5 +141,6 @@ def _print_distance_table(console: Console) -> None:
     console.print(
         f"With w rounded to two decimals, as the paper prints it, both rows come out exactly. Unrounded, the "
         f"far row is {far.distance_unrounded_cm:.2f} cm instead of {far.published_cm:.2f}: rounding w by "
-        f"0.004 cm moves it by {far.distance_cm - far.distance_unrounded_cm:.1f} cm, about as much as one pixel does."
+        f"0.004 cm moves it by {far.distance_cm - far.distance_unrounded_cm:.1f} cm, about as much as "
+        "one pixel does."
     )
