@@ -73,6 +73,7 @@ class ProtocolServer:
         self.silent_session = 0
         self.tap_refusal = ""
         self.capture_delay_ns = 0
+        self.frozen_after_ms = 5000  # a busy machine must not freeze the pages of other tests
         self.captures: list[Json] = []
         self.received: list[Json] = []
         self.acked: list[int] = []
@@ -244,7 +245,7 @@ class ProtocolServer:
         camera |= {"cy": height / 2 - 0.5, "pitch_deg": 18.0, "rate_hz": 30.0}
         return messages.Welcome.model_validate(
             {"seq": seq, "session_id": session, "robot": "Rover", "camera": camera}
-            | {"max_linear": 0.3, "max_angular": 1.2}
+            | {"max_linear": 0.3, "max_angular": 1.2, "frozen_after_ms": self.frozen_after_ms}
         ).model_dump()
 
     def _lease(self, **facts: Any) -> None:

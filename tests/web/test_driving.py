@@ -163,6 +163,7 @@ def test_space_stops_although_a_button_has_the_focus(server, open_page):
 
 
 def test_a_frozen_picture_is_shown_cuts_driving_off_and_refuses_it(server, open_page):
+    server.frozen_after_ms = 500
     page = open_page()
     page.keyboard.down("w")
     server.wait_for("drive", 2)

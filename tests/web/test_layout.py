@@ -86,7 +86,7 @@ def stopped(page, server):
 
 
 def frozen(page, server):
-    server.sends_frames = False
+    server.capture_delay_ns = 6_000_000_000
     page.wait_for_selector("#veil[data-kind=frozen]")
 
 

@@ -128,6 +128,7 @@ def test_age_and_round_trip_are_shown(server, open_page):
 
 def test_the_age_of_the_picture_counts_from_its_capture(server, open_page):
     """A picture that comes fast but was captured long ago is frozen."""
+    server.frozen_after_ms = 500
     page = open_page()
     server.capture_delay_ns = 900_000_000
     page.wait_for_selector("#veil[data-kind=frozen]")

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, TimeoutError
 from tests.web.conftest import wait_ready
 
 PATIENCE_MS = 30_000
@@ -68,11 +68,24 @@ def open_real(browser: Browser, address: str) -> Iterator[Callable[..., Page]]:
     assert troubles == []
 
 
+def hold_forward(driver: Page, watcher: Page) -> None:
+    """Hold W until `watcher` shows that the robot moves; a picture that froze meanwhile needs a new press."""
+    for _ in range(15):
+        wait_ready(driver)
+        driver.keyboard.down("w")
+        try:
+            watcher.wait_for_selector(MOVING, timeout=2000)
+        except TimeoutError:
+            driver.keyboard.up("w")
+        else:
+            return
+    pytest.fail("the robot never moved")
+
+
 def test_holding_drives_and_releasing_stands_still(open_real):
     page = open_real()
     before = page.locator("#odometry").inner_text()
-    page.keyboard.down("w")
-    page.wait_for_selector(MOVING)
+    hold_forward(page, page)
     page.wait_for_selector(f"#odometry:not(:text-is('{before}'))")
     page.keyboard.up("w")
     page.wait_for_selector("#motion:text-is('Still')")
@@ -80,8 +93,7 @@ def test_holding_drives_and_releasing_stands_still(open_real):
 
 def test_stop_latches_and_resume_lets_drive_again(open_real):
     page = open_real()
-    page.keyboard.down("w")
-    page.wait_for_selector(MOVING)
+    hold_forward(page, page)
     page.click("#stop")
     page.wait_for_selector("#stopped:not([hidden])")
     page.wait_for_selector("#motion:text-is('Still')")
@@ -98,8 +110,7 @@ def test_the_lease_goes_from_one_page_to_the_other_by_asking(open_real):
     first.click("#asked-grant")
     wait_ready(second)
     first.wait_for_selector("body.cannot-drive")
-    second.keyboard.down("w")
-    second.wait_for_selector(MOVING)
+    hold_forward(second, second)
     second.keyboard.up("w")
     second.wait_for_selector("#motion:text-is('Still')")
 
@@ -107,8 +118,7 @@ def test_the_lease_goes_from_one_page_to_the_other_by_asking(open_real):
 def test_a_page_that_closes_while_driving_stops_the_robot(open_real):
     first = open_real()
     second = open_real(is_driver=False)
-    first.keyboard.down("w")
-    second.wait_for_selector(MOVING)
+    hold_forward(first, second)
     first.close()
     second.wait_for_selector("#motion:text-is('Still')")
     wait_ready(second)
