@@ -108,7 +108,8 @@ def _print_focal_table(console: Console) -> None:
     last = TABLE_1[-1]
     console.print(
         f"Mean f: {computed:.2f} cm from the rows' inputs, {published:.2f} cm from the printed column. "
-        f"The last row gives {last.focal_cm:.2f} from its own inputs, not the printed {last.published_focal_cm:.2f}."
+        f"The last row gives {last.focal_cm:.2f} from its own inputs, not the printed "
+        f"{last.published_focal_cm:.2f}."
     )
 
 
