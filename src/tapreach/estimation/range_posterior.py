@@ -91,4 +91,6 @@ def _profile(model: ViewModel, best: Solution, ranges: FloatArray) -> tuple[Floa
                 continue
             x, costs[i] = found.x.copy(), found.cost
             log_widths[i] = -0.5 * np.linalg.slogdet(found.information[np.ix_(free, free)])[1]
-    return costs, np.exp(log_widths - log_widths.max())
+    highest = log_widths.max()
+    # No range at all may be feasible; the caller sees it by the costs.
+    return costs, np.exp(log_widths - (highest if np.isfinite(highest) else 0.0))
