@@ -66,18 +66,15 @@ def resized(description: RobotDescription, width: int, height: int) -> RobotDesc
 
     The width keeps its field of view; a flatter picture loses as much above as below.
     """
-    lens = description.camera.model()
-    scale = width / lens.size.width
-    lost_rows = (lens.size.height * scale - height) / 2.0
-    camera = CameraSection.model_validate(
-        description.camera.model_dump()
-        | {
-            "width": width,
-            "height": height,
-            "fx": lens.fx * scale,
-            "fy": lens.fy * scale,
-            "cx": (lens.cx + 0.5) * scale - 0.5,
-            "cy": (lens.cy + 0.5) * scale - 0.5 - lost_rows,
-        }
-    )
-    return description.model_copy(update={"camera": camera})
+    camera = description.camera
+    scale = width / camera.width
+    lost_rows = (camera.height * scale - height) / 2.0
+    changes: dict[str, float] = {"width": width, "height": height, "fx": camera.fx * scale}
+    if camera.fy is not None:
+        changes["fy"] = camera.fy * scale
+    if camera.cx is not None:
+        changes["cx"] = (camera.cx + 0.5) * scale - 0.5
+    if camera.cy is not None:
+        changes["cy"] = (camera.cy + 0.5) * scale - 0.5 - lost_rows
+    resized_camera = CameraSection.model_validate(camera.model_dump(exclude_unset=True) | changes)
+    return description.model_copy(update={"camera": resized_camera})
