@@ -97,7 +97,7 @@ class Follower:
             await asyncio.gather(moving, return_exceptions=True)
 
     async def look(self, frames: int = 4) -> Sighting | None:
-        """Watch `frames` frames at rest; make one sighting of them, appended, or return None when not seen.
+        """Watch `frames` frames at rest; append one sighting made of them, or return None when not seen.
 
         Frames at rest share their errors, so that they count as one.
         """

@@ -12,7 +12,7 @@ from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.move_choice import Choice, choose_move
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.supposed_distance import supposed_distances
-from tapreach.tasks.target import TargetSource
+from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap, TaskContext, TaskReport
 
@@ -169,13 +169,17 @@ class _Locating:
         """
         target = self._report.target(self._sightings(), self._estimate, not self._follower.loss)
         if target.range is None or target.range_interval is None:
-            reason = target.reason or "the robot found no move that keeps the place in the picture"
-            return " ".join(part for part in (f"no position: {reason}.", target.advice) if part)
+            return self._no_position(target)
         low, high = target.range_interval
         sentence = f"{target.range:.2f} m away (95 %: {low:.2f} to {high:.2f} m)"
         if self._follower.loss:
             sentence += f"; lost on the way ({self._follower.loss}), from the views before"
         return sentence
+
+    def _no_position(self, target: Target) -> str:
+        if self._driven == 0.0:
+            return "no position: no move keeps this in the picture. Drive back or turn to it, and tap again"
+        return " ".join(part for part in (f"no position: {target.reason}.", target.advice) if part)
 
     def _show(self) -> None:
         self._shown_ns = self._context.clock.now_ns()

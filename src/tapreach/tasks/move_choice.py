@@ -22,7 +22,7 @@ from tapreach.tasks.sighting import Sighting, observation_of
 
 COLUMNS = (0.14, 0.22, 0.32, 0.42, 0.5, 0.58, 0.68, 0.78, 0.86)
 """Where a turn may put the target, as a share of the picture's width."""
-ADVANCES = (0.08, 0.14, 0.22, 0.32, 0.42)
+ADVANCES = (0.05, 0.09, 0.14, 0.22, 0.32, 0.42)
 MARGIN = 0.07
 """The target stays this share of the picture away from its edges."""
 NEAREST = 0.25
@@ -52,19 +52,35 @@ def choose_move(
     """Return the best turn and advance from `world_from_base`; None when none keeps the target in the
     picture.
 
-    points_in_world: where the target may be, (3,) each. most_advance [m]: what may still be driven.
+    points_in_world: where the target may be, (3,) each, the nearest first. A move that suits all of them is
+    preferred; where there is none the nearest are given up one by one. most_advance [m]: what may still be
+    driven.
     """
-    best: Choice | None = None
-    best_score = math.inf
     known = [observation_of(sighting, description) for sighting in sightings]
+    for given_up in range(len(points_in_world)):
+        points = points_in_world[given_up:]
+        choices = _scored(known, world_from_base, points, most_advance, description)
+        if choices:
+            return min(choices, key=lambda pair: pair[0])[1]
+    return None
+
+
+def _scored(
+    known: Sequence[Observation],
+    world_from_base: PlanarPose,
+    points_in_world: Sequence[FloatArray],
+    most_advance: float,
+    description: RobotDescription,
+) -> list[tuple[float, Choice]]:
+    """Return every candidate with its score; lower is better."""
+    scored = []
     for step in _candidates(world_from_base, points_in_world, most_advance, description):
         found = _relative_sds(known, world_from_base, step, points_in_world, description)
-        if not found or not all(map(math.isfinite, found)):
-            continue
-        score = float(np.mean(np.log(found))) + _PER_METRE * step.advance + _PER_RADIAN * abs(step.turn)
-        if score < best_score:
-            best, best_score = Choice(step, found[len(found) // 2]), score
-    return best
+        if found and all(map(math.isfinite, found)):
+            cost = _PER_METRE * step.advance + _PER_RADIAN * abs(step.turn)
+            score = float(np.mean(np.log(found))) + cost
+            scored.append((score, Choice(step, found[len(found) // 2])))
+    return scored
 
 
 def _candidates(
