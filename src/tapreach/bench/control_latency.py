@@ -7,7 +7,7 @@ import random
 from collections.abc import AsyncIterator, Iterator
 
 from tapreach.bench.control_client import Answer, ControlClient, operator
-from tapreach.bench.drawn import finish
+from tapreach.bench.ending import finish
 from tapreach.bench.figure import Figure, at_least, at_most
 from tapreach.bench.report import Section
 from tapreach.bench.sample import median, percentile

@@ -1,6 +1,5 @@
 """From the bar codes that a page has drawn to the age of its pictures."""
 
-import asyncio
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -72,9 +71,3 @@ def ages_ms(drawing: Drawing, captured_ns: Mapping[int, int]) -> list[float]:
 
 def _newest_before(times_ns: Sequence[int], limit_ns: int) -> int | None:
     return max((when_ns for when_ns in times_ns if when_ns <= limit_ns), default=None)
-
-
-async def finish(task: "asyncio.Task[Any]") -> None:
-    """Cancel a task and wait for its end."""
-    task.cancel()
-    await asyncio.gather(task, return_exceptions=True)

@@ -11,7 +11,8 @@ import json
 
 from tapreach.bench.child import stdin_lines, tell_parent
 from tapreach.bench.pattern import pattern_jpegs
-from tapreach.bench.pattern_robot import PatternRobot, pattern_description
+from tapreach.bench.pattern_description import pattern_description
+from tapreach.bench.pattern_robot import PatternRobot
 from tapreach.geometry.pixel import ImageSize
 from tapreach.robot.clock import Clock, MonotonicClock
 from tapreach.robot.messages import Frame

@@ -17,7 +17,8 @@ from pathlib import Path
 from tapreach.bench.child import stdin_lines, tell_parent
 from tapreach.bench.estimate_load import keep_estimating
 from tapreach.bench.pattern import pattern_jpegs
-from tapreach.bench.pattern_robot import PatternRobot, SentTwist, pattern_description
+from tapreach.bench.pattern_description import pattern_description
+from tapreach.bench.pattern_robot import PatternRobot, SentTwist
 from tapreach.geometry.pixel import ImageSize
 from tapreach.robot.clock import MS, Clock, MonotonicClock
 from tapreach.server.access import AccessPolicy

@@ -9,7 +9,7 @@ import sys
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 
-from tapreach.bench.drawn import finish
+from tapreach.bench.ending import finish
 from tapreach.bench.proc import ProcessId, family, is_alive
 from tapreach.bench.video_client import Viewing, view
 from tapreach.errors import SetupError

@@ -7,7 +7,8 @@ from urllib.request import urlopen
 
 from tapreach.bench.browser import chromium, fresh_page
 from tapreach.bench.child import started
-from tapreach.bench.drawn import Drawing, ages_ms, finish, watch_drawing
+from tapreach.bench.drawn import Drawing, ages_ms, watch_drawing
+from tapreach.bench.ending import finish
 from tapreach.bench.figure import Figure, at_most
 from tapreach.bench.report import Section
 from tapreach.bench.sample import median, percentile

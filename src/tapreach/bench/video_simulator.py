@@ -6,7 +6,7 @@ import numpy as np
 
 from tapreach.bench.browser import chromium_page
 from tapreach.bench.control_client import ControlClient, operator
-from tapreach.bench.drawn import finish
+from tapreach.bench.ending import finish
 from tapreach.bench.figure import Figure, at_least, at_most
 from tapreach.bench.painted import painted_ages_ms, watch_painting
 from tapreach.bench.proc import ProcessId, cpu_seconds
