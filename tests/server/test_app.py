@@ -111,6 +111,24 @@ def test_stopped_server_closes_sockets_and_robot(play):
     assert seen["page"].socket.close_code is not None
 
 
+def test_endless_streams_do_not_hold_up_the_end_and_leave_no_error(play, capfd):
+    seen = {}
+
+    async def scenario(here):
+        async def read_stream():
+            url = f"http://{here.host}/stream.mjpg"
+            async with httpx.AsyncClient() as client, client.stream("GET", url) as response:
+                return len(await response.aread())
+
+        seen["length"] = asyncio.create_task(read_stream())
+        await here.eventually(lambda: here.station.feed.viewers == 1)
+        await here.clock.advance(40 * MS)
+
+    play(scenario)
+    assert seen["length"].result() > 1000
+    assert capfd.readouterr().err == ""
+
+
 def test_robot_that_cannot_be_connected_is_said_by_serve(play, monkeypatch):
     from tapreach.drivers.fake import FakeRobot
 

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from tapreach.geometry.camera import Camera
+from tapreach.geometry.camera import Camera, Projection
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.gaussian import confidence_ellipse
 from tapreach.geometry.planar_motion import PlanarPose
@@ -61,24 +61,36 @@ class MarkerProjection:
         base, markers = None, []
         if world_from_base is not None:
             base = [world_from_base.x, world_from_base.y, world_from_base.heading]
-            camera_from_world = self._camera_from_base * world_from_base.to_rigid().inv()
-            markers = [marker for mark in marks if (marker := self._marker(mark, camera_from_world))]
+            markers = self._markers(world_from_base, marks) if marks else []
         return json.dumps({"base": base, "markers": markers}, separators=(",", ":")).encode()
 
-    def _marker(self, mark: Mark, camera_from_world: RigidTransform) -> dict[str, object] | None:
-        projection = self._camera.project(camera_from_world.apply(mark.points_in_world))
-        if not projection.is_valid[0]:
-            return None  # behind the camera: there is nowhere to draw it
-        u, v = projection.pixels[0]
-        region = projection.pixels[1:][projection.is_valid[1:]]
-        return {
-            "target_id": mark.target_id,
-            "u": round(float(u), 2),
-            "v": round(float(v), 2),
-            "inside": bool(projection.is_inside[0]),
-            "region": _hull(region),
-            "state": mark.state,
-        }
+    def _markers(self, world_from_base: PlanarPose, marks: list[Mark]) -> list[dict[str, object]]:
+        """All marks go through the camera at once: this runs between frames, in the event loop."""
+        points_in_world = np.concatenate([mark.points_in_world for mark in marks])
+        camera_from_world = self._camera_from_base * world_from_base.to_rigid().inv()
+        projection = self._camera.project(camera_from_world.apply(points_in_world))
+        markers, start = [], 0
+        for mark in marks:
+            end = start + len(mark.points_in_world)
+            # Behind the camera there is nowhere to draw it.
+            if projection.is_valid[start]:
+                is_valid = projection.is_valid[start + 1 : end]
+                outline = _hull(projection.pixels[start + 1 : end][is_valid])
+                markers.append(_marker(mark, projection, start, outline))
+            start = end
+        return markers
+
+
+def _marker(mark: Mark, projection: Projection, row: int, region: list[list[float]]) -> dict[str, object]:
+    u, v = projection.pixels[row]
+    return {
+        "target_id": mark.target_id,
+        "u": round(float(u), 2),
+        "v": round(float(v), 2),
+        "inside": bool(projection.is_inside[row]),
+        "region": region,
+        "state": mark.state,
+    }
 
 
 def _hull(pixels: FloatArray) -> list[list[float]]:

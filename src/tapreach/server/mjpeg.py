@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response, StreamingResponse
 
+from tapreach.errors import LinkLost
 from tapreach.robot.frame_store import FrameStore
 from tapreach.server.video_feed import VideoFeed
 
@@ -43,5 +44,7 @@ class PlainVideo:
                 last_id = frame.frame_id
                 # A browser shows a part when it has the head of the next one: send that ahead.
                 yield frame.jpeg + b"\r\n" + PART_HEAD
+        except LinkLost:
+            return  # the server is closing: a stream has no other way to say so than to end
         finally:
             self._feed.viewers -= 1

@@ -6,6 +6,7 @@ import signal
 import socket
 from collections.abc import Callable, Iterator
 
+import anyio.lowlevel
 import uvicorn
 
 from tapreach.errors import SetupError
@@ -73,6 +74,8 @@ async def serve(
     server = _Server(config)
     with _signals_call(lambda: setattr(server, "should_exit", True)):
         try:
+            # Loads anyio's backend now, which would hold up the loop for 40 ms with the first request.
+            await anyio.lowlevel.checkpoint()
             await station.start()
             await _serve_until_failure(server, station, listener, on_ready)
         finally:
@@ -89,6 +92,7 @@ async def _serve_until_failure(
         on_ready()
         await asyncio.wait({serving, station.failed}, return_when=asyncio.FIRST_COMPLETED)
     finally:
+        station.feed.end()
         server.should_exit = True
         await serving
     if station.failed.done():

@@ -5,6 +5,7 @@ import json
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from tapreach.errors import LinkLost
 from tapreach.robot.clock import SECOND, Clock
 from tapreach.server.background import run_until_first_ends
 from tapreach.server.video_feed import VideoFeed
@@ -32,6 +33,8 @@ class Viewer:
         self._feed.viewers += 1
         try:
             await run_until_first_ends(self._send_frames(), self._hear_acknowledgements())
+        except LinkLost as error:
+            await self._socket.close(1001, str(error))
         finally:
             self._feed.viewers -= 1
 
