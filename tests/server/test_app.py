@@ -2,6 +2,7 @@
 
 import asyncio
 import re
+import signal
 
 import httpx
 import pytest
@@ -123,6 +124,9 @@ def test_endless_streams_do_not_hold_up_the_end_and_leave_no_error(play, capfd):
         seen["length"] = asyncio.create_task(read_stream())
         await here.eventually(lambda: here.station.feed.viewers == 1)
         await here.clock.advance(40 * MS)
+        # serve listens for it, as when somebody presses Ctrl-C or the system shuts down.
+        signal.raise_signal(signal.SIGTERM)
+        await here.eventually(lambda: not here.robot.health.is_running)
 
     play(scenario)
     assert seen["length"].result() > 1000

@@ -72,7 +72,12 @@ async def serve(
         timeout_graceful_shutdown=1,
     )
     server = _Server(config)
-    with _signals_call(lambda: setattr(server, "should_exit", True)):
+
+    def end() -> None:
+        station.prepare_end()
+        server.should_exit = True
+
+    with _signals_call(end):
         try:
             # Loads anyio's backend now, which would hold up the loop for 40 ms with the first request.
             await anyio.lowlevel.checkpoint()
@@ -92,7 +97,7 @@ async def _serve_until_failure(
         on_ready()
         await asyncio.wait({serving, station.failed}, return_when=asyncio.FIRST_COMPLETED)
     finally:
-        station.feed.end()
+        station.prepare_end()
         server.should_exit = True
         await serving
     if station.failed.done():

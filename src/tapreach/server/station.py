@@ -78,9 +78,14 @@ class Station:
         for task in self._background:
             task.add_done_callback(self._on_background_end)
 
+    def prepare_end(self) -> None:
+        """Stop the wheels and end the streams, so that open connections can be closed."""
+        self.loop.stop("the server is closing")
+        self.feed.end()
+
     async def stop(self) -> None:
         """Stop the wheels, then everything else. Safe to call twice."""
-        self.loop.stop("the server is closing")
+        self.prepare_end()
         await self.tasks.close()
         background, self._background = self._background, []
         for task in background:
