@@ -93,7 +93,7 @@ class Follower:
             return moving.result()
         finally:
             moving.cancel()
-            # Gathering takes note of its error too, when the motion was interrupted before this was cancelled.
+            # Gathering takes note of its error too, when the motion ended before this was cancelled.
             await asyncio.gather(moving, return_exceptions=True)
 
     async def look(self, frames: int = 4) -> Sighting | None:
