@@ -212,9 +212,9 @@ def test_error_in_the_loop_ends_it_after_a_zero(description):
 def test_task_turns_and_advances(description):
     async def scenario(rig):
         turned = await rig.finished(rig.pilot.turn(radians(30.0)))
-        assert turned.world_from_base.heading == pytest.approx(radians(30.0), abs=0.004)
+        assert turned.world_from_base.heading == pytest.approx(radians(30.0), abs=radians(1.0))
         driven = await rig.finished(rig.pilot.advance(0.2))
-        assert driven.world_from_base.x == pytest.approx(0.2 * 0.866, abs=0.002)
+        assert driven.world_from_base.x == pytest.approx(0.2 * 0.866, abs=0.005)
         assert rig.speed == 0.0
         assert rig.refusals == []
 
@@ -310,7 +310,7 @@ def test_cancelled_motion_stops_at_once_and_frees_the_pilot(description):
         await asyncio.sleep(0)
         assert rig.loop.sent.twist.is_zero
         assert (await rig.finished(rig.pilot.turn(0.1))).world_from_base.heading == pytest.approx(
-            0.1, abs=0.003
+            0.1, abs=radians(1.0)
         )
 
     play(description, scenario)

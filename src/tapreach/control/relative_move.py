@@ -13,16 +13,24 @@ STEERING_RATE = 2.0
 """Turn rate per heading error while advancing [1/s]."""
 
 
+NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.002, math.radians(0.5)
+"""What is not worth creeping for [m], [rad]: what counts is what odometry says was done."""
+CREEP, CREEP_TURN = 0.02, 0.1
+"""Least speeds [m/s], [rad/s]: slower, geared hobby motors stick."""
+
+
 def advance_profile(base: BaseSection) -> SlideProfile:
-    """Return how this base advances."""
-    resolution = 2.0 * math.pi * base.wheel_radius / base.ticks_per_turn
-    return SlideProfile(GENTLE * base.max_linear, GENTLE * base.max_linear_acceleration, resolution)
+    """Return how this base advances; it comes no nearer than one tick."""
+    tick = 2.0 * math.pi * base.wheel_radius / base.ticks_per_turn
+    speed, acceleration = GENTLE * base.max_linear, GENTLE * base.max_linear_acceleration
+    return SlideProfile(speed, acceleration, max(NEAR_ENOUGH, tick), min(CREEP, speed))
 
 
 def turn_profile(base: BaseSection) -> SlideProfile:
-    """Return how this base turns on the spot; one tick of both wheels is the least turn."""
-    resolution = 2.0 * advance_profile(base).resolution / base.track_width
-    return SlideProfile(GENTLE * base.max_angular, GENTLE * base.max_angular_acceleration, resolution)
+    """Return how this base turns on the spot; it comes no nearer than one tick of both wheels."""
+    tick = 4.0 * math.pi * base.wheel_radius / base.ticks_per_turn / base.track_width
+    speed, acceleration = GENTLE * base.max_angular, GENTLE * base.max_angular_acceleration
+    return SlideProfile(speed, acceleration, max(NEAR_ENOUGH_TURN, tick), min(CREEP_TURN, speed))
 
 
 class Turn:

@@ -10,23 +10,30 @@ STALL_NS = 1 * SECOND
 SETTLE_NS = 120 * MS
 LANDING_RATE = 2.5
 """Speed per remaining way near the goal [1/s]: slow against motors that answer within 0.15 s."""
+CLOSE = 5.0
+"""Tolerances from the goal within which wheels that friction holds have arrived."""
 
 
 @dataclass(frozen=True, slots=True)
 class SlideProfile:
-    """Speed and acceleration to use, and the least change that the encoders show; metres or radians."""
+    """Speed and acceleration to use, what is near enough, and the least speed that overcomes friction.
+
+    In metres or radians.
+    """
 
     speed: float
     acceleration: float
-    resolution: float
+    tolerance: float
+    creep: float
 
 
 class Slide:
     """Drives a coordinate from 0 to `goal`. Feed `step` with the measured coordinate; send what it returns.
 
-    Arrives when the coordinate stays within one `resolution` of the goal, without command, for 120 ms. Each
-    time the goal was passed twice the tolerance grows by one resolution, so that a motor with play cannot
-    hunt for ever. Gives up when the coordinate does not come nearer for 1 s although it should.
+    Arrives when the coordinate stays within `tolerance` of the goal, without command, for 120 ms. Each time
+    the goal was passed twice the tolerance grows by itself once more: a motor with play cannot hunt for ever.
+    When the coordinate does not come nearer for 1 s although it should, that is an arrival close to the goal
+    (where friction holds it; odometry knows what was really done) and a reason to give up far from it.
     """
 
     def __init__(self, goal: float, profile: SlideProfile) -> None:
@@ -59,10 +66,10 @@ class Slide:
     @property
     def _tolerance(self) -> float:
         # A hair above, since ticks and goal are sums of rounded numbers.
-        return self._profile.resolution * (1.001 + self._passes // 2)
+        return self._profile.tolerance * (1.001 + self._passes // 2)
 
     def _count_passes(self, remaining: float) -> None:
-        if abs(remaining) > self._profile.resolution and remaining * self._side < 0.0:
+        if abs(remaining) > self._profile.tolerance and remaining * self._side < 0.0:
             self._side = -self._side
             self._passes += 1
             self._best = math.inf
@@ -74,15 +81,15 @@ class Slide:
             self.progress = Progress.ARRIVED
 
     def _watch_for_stall(self, distance: float, now_ns: int) -> None:
-        if distance < self._best - 0.5 * self._profile.resolution:
+        if distance < self._best - 0.25 * self._profile.tolerance:
             self._best, self._best_ns = distance, now_ns
         elif now_ns - self._best_ns >= STALL_NS:
-            self.progress = Progress.GIVEN_UP
+            is_close = distance <= CLOSE * self._tolerance
+            self.progress = Progress.ARRIVED if is_close else Progress.GIVEN_UP
 
     def _next_speed(self, remaining: float, elapsed: float) -> float:
         profile, distance = self._profile, abs(remaining)
         landing = min(math.sqrt(2.0 * profile.acceleration * distance), LANDING_RATE * distance)
-        # Never slower than one encoder step per 0.1 s, or the landing would take for ever.
-        wanted = min(profile.speed, max(landing, 10.0 * profile.resolution))
+        wanted = min(profile.speed, max(landing, profile.creep))
         before = abs(self._speed) if self._speed * remaining > 0.0 else 0.0
         return math.copysign(min(wanted, before + profile.acceleration * elapsed), remaining)
