@@ -44,7 +44,7 @@ def advice_to_halve(
         return "turn until the target is nearer the middle of the picture"
     if best[0] > 0.9 * relative_sd:
         return "more views of this kind will hardly help; look from another side"
-    return f"{_in_words(best[1])} more to come down to {100.0 * best[0] / relative_sd:.0f} % of the error"
+    return f"{_in_words(best[1])} more for an error {100.0 * (1.0 - best[0] / relative_sd):.0f} % smaller"
 
 
 def _after(
