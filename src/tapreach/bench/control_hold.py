@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from tapreach.bench.browser import align_clock, chromium_page
 from tapreach.bench.control_stop import SILENCE_MS
 from tapreach.bench.figure import Figure, at_least, at_most, exactly
+from tapreach.bench.painted import CANVAS
 from tapreach.bench.pattern_robot import SentTwist
 from tapreach.bench.report import Section
 from tapreach.bench.sample import median
 from tapreach.bench.served import PatternServer, Wheels
-from tapreach.bench.video_page import CANVAS
 from tapreach.robot.clock import MS, SECOND, Clock
 
 if TYPE_CHECKING:

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tapreach.bench.browser import PageClock, align_clock
-from tapreach.bench.video_page import CANVAS
 from tapreach.robot.clock import MS, SECOND, Clock
 
 if TYPE_CHECKING:
     from playwright.async_api import Page
 
+CANVAS = "canvas#picture"
 _WATCH = """(selector) => {
   const canvas = document.querySelector(selector);
   window.tapreachPainted = [];

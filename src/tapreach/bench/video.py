@@ -74,7 +74,7 @@ async def run_video(plan: VideoPlan, on_section: Callable[[Section], None], cloc
         ),
         Measurement("6 Mbit/s", served(VGA, lambda s: measure_narrow_link(s, seconds, adapt, clock))),
         *(Measurement(f"Chromium, {size.width} px", served(size, in_chromium)) for size in plan.sizes),
-        Measurement("Taps", served(VGA, lambda s: measure_taps(s, plan.taps, plan.mouse_taps, seed))),
+        Measurement("Taps", served(VGA, lambda s: measure_taps(s, plan.taps, plan.mouse_taps, seed, clock))),
         Measurement("Simulator", lambda: measure_simulator(plan.simulator_starts, max(seconds, 3.0), clock)),
     )
     return await run_series("video", "Video", plan.is_smoke, measurements, on_section, clock)

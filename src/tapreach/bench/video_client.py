@@ -58,6 +58,11 @@ class Viewing:
         duration_ns = self.arrivals[-1].received_ns - self.arrivals[0].received_ns
         return (len(self.arrivals) - 1) * SECOND / duration_ns
 
+    @property
+    def captured_ns(self) -> dict[int, int]:
+        """When each frame was captured, by its id."""
+        return {arrival.frame_id: arrival.captured_ns for arrival in self.arrivals}
+
     def since(self, begin_ns: int) -> "Viewing":
         """Return only what arrived at or after `begin_ns`."""
         return Viewing([arrival for arrival in self.arrivals if arrival.received_ns >= begin_ns])

@@ -8,13 +8,12 @@ from tapreach.bench.browser import chromium_page
 from tapreach.bench.control_client import ControlClient, operator
 from tapreach.bench.ending import finish
 from tapreach.bench.figure import Figure, at_least, at_most
-from tapreach.bench.painted import painted_ages_ms, watch_painting
+from tapreach.bench.painted import CANVAS, painted_ages_ms, watch_painting
 from tapreach.bench.proc import ProcessId, cpu_seconds
 from tapreach.bench.report import Section
 from tapreach.bench.sample import median, percentile, slope
 from tapreach.bench.simulated import SimulatedRun, simulated_run
 from tapreach.bench.video_client import Viewing, view
-from tapreach.bench.video_page import CANVAS
 from tapreach.robot.clock import MS, SECOND, Clock
 from tapreach.robot.messages import Twist
 
@@ -59,8 +58,7 @@ async def _watch(run: SimulatedRun, viewing: Viewing, seconds: float, clock: Clo
         duration = (clock.now_ns() - begin_ns) / SECOND
         shares = {who: used - cpu_before[who] for who, used in _cpu(members).items()}
     seen = viewing.since(begin_ns)
-    captured_ns = {arrival.frame_id: arrival.captured_ns for arrival in viewing.arrivals}
-    ages = painted_ages_ms(painted, captured_ns)
+    ages = painted_ages_ms(painted, viewing.captured_ns)
     intervals = np.diff([arrival.captured_ns for arrival in seen.arrivals]) / MS
     return (
         Figure("pictures at a Python viewer", seen.rate_hz, "Hz", at_least(0.95 * WANTED_HZ)),

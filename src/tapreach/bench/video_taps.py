@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING
 
 from tapreach.bench.browser import chromium_page
 from tapreach.bench.figure import Figure, exactly
+from tapreach.bench.painted import CANVAS
 from tapreach.bench.pattern import CODES
 from tapreach.bench.report import Section
 from tapreach.bench.served import PatternServer
-from tapreach.bench.video_page import CANVAS
+from tapreach.robot.clock import MS, Clock
 
 if TYPE_CHECKING:
     from playwright.async_api import Page
@@ -18,7 +19,9 @@ _PROBE = Path(__file__).with_name("tap_probe.js")
 Pairs = list[tuple[int, int | None]]
 
 
-async def measure_taps(server: PatternServer, synthetic: int, trusted: int, seed: int) -> Section:
+async def measure_taps(
+    server: PatternServer, synthetic: int, trusted: int, seed: int, clock: Clock
+) -> Section:
     """Tap by events made in the page, and with the browser's own mouse."""
     async with chromium_page() as page:
         await page.add_init_script(path=_PROBE)
@@ -29,7 +32,7 @@ async def measure_taps(server: PatternServer, synthetic: int, trusted: int, seed
         )
         by_event: Pairs = await page.evaluate("([n, s]) => tapreachTaps.tapMany(n, s)", [synthetic, seed])
         await page.evaluate("tapreachTaps.pairs = []")
-        by_mouse = await _tap_with_mouse(page, trusted, random.Random(seed))
+        by_mouse = await _tap_with_mouse(page, trusted, random.Random(seed), clock)
     return Section(
         "Taps name the painted picture",
         "Each tap's frame id against the bar code on the canvas when the finger came down; a miss is a tap "
@@ -39,13 +42,14 @@ async def measure_taps(server: PatternServer, synthetic: int, trusted: int, seed
     )
 
 
-async def _tap_with_mouse(page: "Page", count: int, chance: random.Random) -> Pairs:
+async def _tap_with_mouse(page: "Page", count: int, chance: random.Random, clock: Clock) -> Pairs:
     box = await page.locator(CANVAS).bounding_box()
     assert box is not None
     for _ in range(count):
         x = box["x"] + box["width"] * chance.uniform(0.3, 0.7)
         y = box["y"] + box["height"] * chance.uniform(0.3, 0.7)
         await page.mouse.click(x, y)
+        await clock.sleep_until(clock.now_ns() + chance.randint(0, 60) * MS)
     pairs: Pairs = await page.evaluate("tapreachTaps.pairs")
     return pairs
 
