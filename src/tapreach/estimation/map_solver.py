@@ -97,8 +97,11 @@ def covariance_of(information: FloatArray) -> FloatArray:
 
 def inverse_depth_information(on_target: FloatArray) -> float:
     """Return the information [m²] on rho alone, bearing marginalised; 0 or a rounding error when singular."""
-    bearing, mixed = on_target[:2, :2], on_target[:2, 2]
-    return float(on_target[2, 2] - mixed @ np.linalg.solve(bearing, mixed))
+    (aa, ab, ac), (_, bb, bc), (_, _, cc) = on_target.tolist()
+    determinant = aa * bb - ab * ab
+    if not determinant > 1e-14 * aa * bb:
+        return 0.0  # not even the bearing is known
+    return float(cc - (ac * ac * bb - 2.0 * ac * bc * ab + bc * bc * aa) / determinant)
 
 
 def _linearise(model: ViewModel, x: FloatArray) -> _Linearised | None:
