@@ -1,5 +1,7 @@
 """The whole product: `tapreach run` with the simulated rover, and a real browser on its page."""
 
+import json
+import math
 import os
 import shutil
 from collections.abc import Iterator
@@ -8,12 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 from tests.scenarios.running import tapreach_run
+from websockets.sync.client import connect
 
 from tapreach.cli.robot_file import find_robot_file
 from tapreach.drivers.sim.scene import load_scene
 from tapreach.geometry.camera import Camera
+from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import load_robot
 
 CHROMIUM = os.environ.get("TAPREACH_CHROMIUM") or shutil.which("chromium") or "/usr/bin/chromium"
@@ -33,12 +37,13 @@ def browser() -> Iterator[Browser]:
 class Operator:
     """A person at the page, who knows where things stand in the room when the robot starts."""
 
-    def __init__(self, page: Page, scene: str) -> None:
+    def __init__(self, page: Page, address: str, scene: str) -> None:
         self.page = page
+        self._socket_address = address.replace("http", "ws") + "ws/control"
         self._objects = {thing.name: thing for thing in load_scene(scene).objects}
         description = load_robot(find_robot_file("sim"))
         self._camera: Camera = description.camera.model()
-        self._camera_from_world = description.camera.mount.base_from_camera().inv()
+        self._base_from_camera = description.camera.mount.base_from_camera()
 
     def middle_of(self, name: str) -> NDArray[np.float64]:
         """Where the middle of a thing is, world frame [m]."""
@@ -50,8 +55,9 @@ class Operator:
         return self._objects[name].width / 2
 
     def tap(self, name: str) -> None:
-        """Tap the middle of a thing as it is seen from the start."""
-        in_camera = self._camera_from_world.apply(self.middle_of(name))
+        """Tap the middle of a thing, as it is seen from where the wheels say that the robot is."""
+        world_from_camera = self.pose().to_rigid() * self._base_from_camera
+        in_camera = world_from_camera.inv().apply(self.middle_of(name))
         (u, v) = self._camera.project(in_camera[None]).pixels[0]
         self.tap_pixel(float(u), float(v))
 
@@ -78,6 +84,27 @@ class Operator:
         """What the page says of the wheels."""
         return self.page.locator("#odometry").inner_text()
 
+    def pose(self) -> PlanarPose:
+        """Where the wheels say that the robot is: asked as somebody who watches."""
+        with connect(self._socket_address) as socket:
+            socket.send(json.dumps({"type": "hello", "seq": 1, "name": "watcher"}))
+            while True:
+                message = json.loads(socket.recv(timeout=30))
+                if message["type"] == "state" and message["odometry"]:
+                    told = message["odometry"]
+                    return PlanarPose(told["x"], told["y"], math.radians(told["heading_deg"]))
+
+    def error(self, name: str) -> float:
+        """Distance of the position on the target card from the middle of a thing [m]."""
+        position, _ = self.read_position()
+        in_world = self.pose().to_rigid().apply(position)
+        return float(np.linalg.norm(in_world - self.middle_of(name)))
+
+    def wait_for_task(self) -> None:
+        """Wait until no task runs any more."""
+        expect(self.page.locator("#task")).to_be_hidden(timeout=90_000)
+        expect(self.page.locator("#motion")).to_have_text("Still")
+
 
 @pytest.fixture
 def operator(browser: Browser, tmp_path: Path) -> Iterator[Operator]:
@@ -91,7 +118,7 @@ def operator(browser: Browser, tmp_path: Path) -> Iterator[Operator]:
         page.add_init_script("localStorage.setItem('tapreach.hints', '3')")
         page.goto(run.address)
         page.wait_for_selector("body:not(.cannot-drive)")
-        page.wait_for_function("document.getElementById('lease-who').textContent === 'You'")
-        yield Operator(page, "room")
+        expect(page.locator("#lease-who")).to_have_text("You")
+        yield Operator(page, run.address, "room")
         context.close()
     assert troubles == []

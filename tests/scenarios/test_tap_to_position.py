@@ -1,18 +1,41 @@
-"""The main job, end to end: page, server, tasks, simulated rover; checked against where the things stand."""
+"""The main job, end to end: page, server, tasks, simulated rover; checked against where the things stand.
+
+The page's deadman is real here: on a starved machine the robot may stop because its operator was not heard
+for 200 ms, as it should. Then the operator does what a person would do: taps again.
+"""
 
 import numpy as np
 from playwright.sync_api import expect
-from tests.scenarios.conftest import MINUS, Operator
+from tests.scenarios.conftest import Operator
+
+TRIES = 4
 
 
 def test_one_tap_locates_the_red_can(operator: Operator) -> None:
-    operator.tap("red can")
-    expect(operator.page.locator("#task")).to_be_visible()
-    expect(operator.page.locator("#task")).to_be_hidden(timeout=90_000)
-    expect(operator.page.locator("#card-title")).to_have_text("Target")
-    position, half_width = operator.read_position()
-    assert _error(operator, "red can", position) < 0.05 + operator.radius_of("red can")
+    locate(operator, "red can")
+    _, half_width = operator.read_position()
+    assert operator.error("red can") < operator.radius_of("red can") + 0.03
     assert np.all(half_width < 0.15)
+
+
+def test_two_taps_guided_locate_the_red_can(operator: Operator) -> None:
+    operator.page.locator("#menu-open").click()
+    operator.page.locator("#guide-two-tap").click()
+    act(operator, "Take pose")
+    go_on(operator, "Centre the target")
+    operator.tap("red can")
+    expect(operator.page.locator("#guide-hint")).to_contain_text("left")
+    act(operator, "Centre it", until="centre line")
+    go_on(operator, "First tap")
+    operator.tap("red can")
+    expect(operator.page.locator("#guide-title")).to_have_text("Turn left")
+    act(operator, "Turn", until="Turned 1")
+    go_on(operator, "Advance")
+    act(operator, "Advance", until="of 20 cm")
+    go_on(operator, "Second tap")
+    operator.tap("red can")
+    expect(operator.page.locator("#guide-result")).to_contain_text("O_NEW")
+    assert operator.error("red can") < operator.radius_of("red can") + 0.05
 
 
 def test_floor_guess_is_there_at_once_and_drawn_as_a_guess(operator: Operator) -> None:
@@ -27,29 +50,50 @@ def test_floor_guess_is_there_at_once_and_drawn_as_a_guess(operator: Operator) -
 def test_hold_drives_and_release_stops(operator: Operator) -> None:
     before = operator.odometry()
     forward = operator.page.locator("[data-drive=forward]")
-    forward.hover()
-    operator.page.mouse.down()
-    expect(operator.page.locator("#odometry")).not_to_have_text(before)
-    operator.page.mouse.up()
+    for _ in range(TRIES):
+        forward.hover()
+        operator.page.mouse.down()
+        operator.page.wait_for_timeout(500)
+        operator.page.mouse.up()
+        if operator.odometry() != before:
+            break
+    assert operator.odometry() != before
     expect(operator.page.locator("#motion")).to_have_text("Still")
+    assert operator.pose().x > 0.01
 
 
-def test_cancel_during_locate_stops_and_says_so(operator: Operator) -> None:
+def test_cancel_during_locate_stops_at_once(operator: Operator) -> None:
     operator.tap("red can")
     operator.page.locator("#task-cancel").click()
-    expect(operator.page.locator("#task")).to_be_hidden(timeout=30_000)
-    expect(operator.page.locator("#motion")).to_have_text("Still")
+    operator.wait_for_task()
+    at_rest = operator.pose()
+    operator.page.wait_for_timeout(500)
+    assert operator.pose() == at_rest
 
 
-def _error(operator: Operator, name: str, position_in_base: np.ndarray) -> float:
-    """Distance from the middle of the thing, with the robot where odometry says it is now."""
-    x, y, heading = _numbers(operator.odometry())
-    turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-    in_world = np.array([*(turn @ position_in_base[:2] + [x, y]), position_in_base[2]])
-    return float(np.linalg.norm(in_world - operator.middle_of(name)))
+def locate(operator: Operator, name: str) -> None:
+    """Tap until there is a position."""
+    for _ in range(TRIES):
+        operator.tap(name)
+        expect(operator.page.locator("#card-title")).to_have_text("Target")
+        operator.wait_for_task()
+        if operator.page.locator("#card-xyz dd").count():
+            return
+    raise AssertionError(operator.page.locator("#card").inner_text())
 
 
-def _numbers(odometry: str) -> tuple[float, float, float]:
-    """x [m], y [m], heading [rad] of 'x 0.10  y -0.02 m  3°'."""
-    words = odometry.replace(MINUS, "-").replace("°", "").replace("m", "").split()
-    return float(words[1]), float(words[3]), float(np.radians(float(words[4])))
+def act(operator: Operator, name: str, until: str = "") -> None:
+    """Let the robot do a step of the guide until the hint says that it is done."""
+    hint = operator.page.locator("#guide-hint")
+    for _ in range(TRIES):
+        operator.page.get_by_role("button", name=name, exact=True).click()
+        operator.wait_for_task()
+        if until in hint.inner_text():
+            return
+    raise AssertionError(operator.page.locator("#guide").inner_text())
+
+
+def go_on(operator: Operator, title: str) -> None:
+    """Press Next and see the step of this title."""
+    operator.page.get_by_role("button", name="Next", exact=True).click()
+    expect(operator.page.locator("#guide-title")).to_have_text(title)
