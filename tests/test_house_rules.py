@@ -179,7 +179,7 @@ def test_handed_in_clock_is_not_caught(code: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["see /home/anna/rover", "cd /work/main", "index https://packages.internal/simple"]
+    "text", ["see /home/anna/rover", "cd /root/rover", "index https://packages.internal/simple"]
 )
 def test_machine_words_are_caught(text: str) -> None:
     assert machine_words(text)
