@@ -26,6 +26,7 @@ from tapreach.tasks.task import Tap, TaskContext
 TAP_SIGMA = 1.0
 """How well a person finds the same spot of a target again [px]."""
 CENTRED = math.radians(0.5)
+CORRECT = "Tap the spot once more to correct the last tap."
 
 
 class Guide:
@@ -145,12 +146,13 @@ class Guide:
 
     def _state(self) -> GuideState:
         progress, step = self._progress, self._progress.step
+        is_finished = bool(self._result.text) and progress.number + 1 == len(progress.table)
         return GuideState(
             kind=self._kind,
             step=progress.number + 1,
             steps=len(progress.table),
-            title=step.title,
-            instruction=step.instruction,
+            title="Result" if is_finished else step.title,
+            instruction=CORRECT if is_finished else step.instruction,
             hint=self._hint(),
             acts=progress.acts,
             wants_tap=step.wants_tap,
