@@ -22,7 +22,7 @@ from tapreach.bench.pattern_robot import PatternRobot, SentTwist
 from tapreach.geometry.pixel import ImageSize
 from tapreach.robot.clock import MS, Clock, MonotonicClock
 from tapreach.server.access import AccessPolicy
-from tapreach.server.serve import listening_socket, serve
+from tapreach.server.serve import listening_socket, run_event_loop, serve
 from tapreach.server.station import Station
 from tapreach.tasks.compute import ComputeProcess
 
@@ -110,7 +110,7 @@ def main() -> None:
     parser.add_argument("seed", type=int)
     given = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="tapreach-bench-") as captures:
-        asyncio.run(_run(ImageSize(given.width, given.height), given.rate_hz, given.seed, Path(captures)))
+        run_event_loop(_run(ImageSize(given.width, given.height), given.rate_hz, given.seed, Path(captures)))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """`tapreach run`: start a robot, simulated unless told otherwise, and serve its page until Ctrl-C."""
 
-import asyncio
 import logging
 import secrets
 from collections.abc import Callable
@@ -8,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-import uvloop
 from rich.console import Console
 
 from tapreach.cli.address import address_in_network, page_address, qr_code
@@ -17,7 +15,7 @@ from tapreach.drivers.registry import make_robot
 from tapreach.robot.clock import MonotonicClock
 from tapreach.robot.config import RobotDescription
 from tapreach.server.access import AccessPolicy
-from tapreach.server.serve import listening_socket, serve
+from tapreach.server.serve import listening_socket, run_event_loop, serve
 from tapreach.server.station import Station
 
 
@@ -47,9 +45,7 @@ def run(
     address = page_address(host, listener.getsockname()[1], token)
     policy = AccessPolicy(token, host_names=[host])
     console.print(f"Starting the robot {description.name!r} ...")
-    # uvloop comes with uvicorn[standard]; it halves the time from a command's arrival to the driver.
-    with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
-        runner.run(serve(station, listener, policy, _announcer(console, description, address, lan)))
+    run_event_loop(serve(station, listener, policy, _announcer(console, description, address, lan)))
     console.print("Stopped; the robot stands still.")
 
 

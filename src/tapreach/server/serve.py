@@ -4,10 +4,12 @@ import asyncio
 import contextlib
 import signal
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Coroutine, Iterator
+from typing import Any
 
 import anyio.lowlevel
 import uvicorn
+import uvloop
 
 from tapreach.errors import SetupError
 from tapreach.server.access import AccessPolicy
@@ -48,6 +50,12 @@ class _Server(uvicorn.Server):
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
         yield
+
+
+def run_event_loop(main: Coroutine[Any, Any, None]) -> None:
+    """Run the server's coroutine to its end on uvloop, which answers sooner than asyncio's own loop."""
+    with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+        runner.run(main)
 
 
 async def serve(
