@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from tapreach.estimation.map_solver import information_at, inverse_depth_information, target_information
+from tapreach.estimation.map_solver import inverse_depth_information
 from tapreach.estimation.motion_prior import Motion, MountNoise, camera_errors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.view_model import view_model
@@ -40,12 +40,12 @@ def position_bound(
     x, y, z = camera_from_world.apply(finite_array("point_in_world", point_in_world, (3,)))
     if z <= 0.0:
         return None
-    unknowns = model.at(1.0 / z)
-    unknowns[:2] = x / z, y / z
-    information = information_at(model, unknowns)
-    if information is None:
+    unknowns = np.zeros((1, model.unknowns))
+    unknowns[0, :3] = x / z, y / z, 1.0 / z
+    views = model.linearised(unknowns)
+    if not views.is_in_front[0]:
         return None
-    on_target = target_information(information)
+    on_target = views.on_target()[0]
     on_depth = inverse_depth_information(on_target)
     if on_depth <= 1e-12 * on_target[2, 2]:
         return Bound(None, float("inf"))

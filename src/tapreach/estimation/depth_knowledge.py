@@ -5,12 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tapreach.estimation.map_solver import (
-    Solution,
-    information_at,
-    inverse_depth_information,
-    target_information,
-)
+from tapreach.estimation.map_solver import Solution, inverse_depth_information
 from tapreach.estimation.range_posterior import RangePosterior, RangePrior, range_posterior
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
@@ -69,18 +64,17 @@ class DepthKnowledge:
 
 def depth_knowledge(model: ViewModel, solution: Solution, prior: RangePrior) -> DepthKnowledge:
     """Return what the solution tells about the depth; the posterior only where 1/Z is not nearly normal."""
-    sd = _sd(solution.information)
+    sd = _sd(solution.on_target)
     slant = float(np.linalg.norm([*solution.x[:2], 1.0]))
     rho = solution.inverse_depth
     is_normal = rho > 0.0 and sd <= _NORMAL * rho
     posterior = None if is_normal or math.isinf(sd) else range_posterior(model, solution, prior)
-    at_infinity = information_at(model, model.at(0.0))
-    least_sd = sd if at_infinity is None else max(sd, _sd(at_infinity))
+    at_infinity = model.linearised(model.on_ray(np.zeros(1)))
+    least_sd = max(sd, _sd(at_infinity.on_target()[0])) if at_infinity.is_in_front[0] else sd
     return DepthKnowledge(rho, sd, least_sd, slant, model.baseline, posterior)
 
 
-def _sd(information: FloatArray) -> float:
-    on_target = target_information(information)
+def _sd(on_target: FloatArray) -> float:
     on_depth = inverse_depth_information(on_target)
     # Compared with what the depth would have if all else were known: below that it is rounding.
     return 1.0 / math.sqrt(on_depth) if on_depth > 1e-12 * on_target[2, 2] else math.inf

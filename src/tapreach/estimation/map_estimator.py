@@ -16,7 +16,7 @@ from tapreach.estimation.motion_prior import Motion, MountNoise, camera_errors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.outlier import solve_without_outliers
 from tapreach.estimation.point_estimate import PointEstimate, Status
-from tapreach.estimation.point_in_frames import point_in_last_base, point_in_world
+from tapreach.estimation.point_in_frames import points_in_world_and_base
 from tapreach.estimation.range_posterior import RangePrior
 from tapreach.estimation.verdict import reason_without_baseline, verdict
 from tapreach.estimation.view_model import ViewModel, view_model
@@ -66,20 +66,22 @@ def _answer(
 ) -> PointEstimate:
     status, reason = verdict(model, solution, depth)
     rejected = tuple(int(i) for i in np.flatnonzero(~model.is_used))
-    residuals_px = model.residuals_px(model.predict(solution.x))
+    residuals_px = model.residuals_px(solution.x)
     if status is Status.DEGENERATE:
         return _unknown(status, reason, model, residuals_px)
-    covariance = covariance_of(solution.information)
+    covariance = covariance_of(solution.on_target)
     is_determined = status is Status.DETERMINED
-    world = point_in_world(model, observations[0], solution.x, covariance) if is_determined else None
-    base = point_in_last_base(model, observations[-1], solution.x, covariance) if is_determined else None
+    world = base = None
+    if is_determined:
+        first, last = observations[0], observations[-1]
+        world, base = points_in_world_and_base(model, first, last, solution, covariance)
     return PointEstimate(
         status=status,
         reason=reason,
         advice=advice,
         bearing=solution.x[:2].copy(),
         inverse_depth=depth.inverse_depth,
-        bearing_inverse_depth_cov=covariance[:3, :3].copy(),
+        bearing_inverse_depth_cov=covariance,
         relative_sd=depth.relative_sd,
         point_in_world=world.point if world is not None else None,
         point_cov_in_world=world.covariance if world is not None else None,

@@ -1,5 +1,6 @@
 """What is known of the poses' errors: a linear map from independent unit normals (docs/estimation.md, 3)."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -51,10 +52,10 @@ def camera_errors(
     covariance of the base poses, joint (6n, 6n) or of independent poses (n, 6, 6).
     """
     of_bases = _base_errors(observations, motion)
-    adjoints = np.stack([_inverse_adjoint(view.base_from_camera) for view in observations])
-    of_cameras = adjoints @ of_bases
-    noise = mount_noise if mount_noise is not None else MountNoise()
-    sigmas = np.repeat([noise.position_sigma, noise.angle_sigma], 3)
+    of_cameras = _inverse_adjoints(observations) @ of_bases
+    if mount_noise is None:
+        return CameraErrors(of_cameras, np.zeros((6, of_cameras.shape[2])))
+    sigmas = np.repeat([mount_noise.position_sigma, mount_noise.angle_sigma], 3)
     of_mount = np.diag(sigmas)[:, sigmas > 0.0]
     spread = np.broadcast_to(of_mount, (len(observations), *of_mount.shape))
     by_mount = np.concatenate([np.zeros((6, of_cameras.shape[2])), of_mount], axis=1)
@@ -71,8 +72,10 @@ def _base_errors(observations: Sequence[Observation], motion: Motion) -> FloatAr
 
 
 def _odometry_errors(observations: Sequence[Observation], noise: OdometryNoise) -> FloatArray:
-    start_from_world = observations[0].world_from_base.inv()
-    poses = [PlanarPose.from_rigid(start_from_world * view.world_from_base) for view in observations]
+    matrices = np.array([view.world_from_base.as_matrix() for view in observations])
+    start, offsets = matrices[0, :3, :3], matrices[:, :3, 3] - matrices[0, :3, 3]
+    places, ahead = (offsets @ start).tolist(), (matrices[:, :3, 0] @ start).tolist()
+    poses = [PlanarPose(x, y, math.atan2(s, c)) for (x, y, _), (c, s, _) in zip(places, ahead, strict=True)]
     planar = pose_errors(poses, noise)
     used = np.any(planar != 0.0, axis=(0, 1))
     errors = np.zeros((len(poses), 6, int(used.sum())))
@@ -95,10 +98,18 @@ def _covariance_errors(covariance: FloatArray, count: int) -> FloatArray:
     return root[:, np.any(root != 0.0, axis=0)].reshape(count, 6, -1)
 
 
+def _inverse_adjoints(observations: Sequence[Observation]) -> FloatArray:
+    """Return (n, 6, 6): `_inverse_adjoint` of every view's mount; mostly there is but one."""
+    mounts = {id(view.base_from_camera): view.base_from_camera for view in observations}
+    adjoints = {key: _inverse_adjoint(mount) for key, mount in mounts.items()}
+    return np.array([adjoints[id(view.base_from_camera)] for view in observations])
+
+
 def _inverse_adjoint(base_from_camera: RigidTransform) -> FloatArray:
     """Return (6, 6): a base's small motion as the camera on it makes it."""
-    rotation = base_from_camera.rotation.as_matrix()
+    matrix = base_from_camera.as_matrix()
+    rotation = matrix[:3, :3]
     adjoint = np.zeros((6, 6))
     adjoint[:3, :3] = adjoint[3:, 3:] = rotation.T
-    adjoint[:3, 3:] = -rotation.T @ skew(np.asarray(base_from_camera.translation))
+    adjoint[:3, 3:] = -rotation.T @ skew(matrix[:3, 3])
     return adjoint

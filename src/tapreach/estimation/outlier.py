@@ -32,7 +32,7 @@ def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | Non
 def _best_without_one(
     model: ViewModel, solution: Solution, hoped: float
 ) -> tuple[ViewModel, Solution] | None:
-    expected = _expected_gains(model, solution)
+    expected = _expected_gains(solution)
     if float(expected.max()) < hoped:
         return None
     best: tuple[ViewModel, Solution] | None = None
@@ -44,11 +44,18 @@ def _best_without_one(
     return best
 
 
-def _expected_gains(model: ViewModel, solution: Solution) -> FloatArray:
-    """Return (n,): the linear prediction of how much the cost falls without each view."""
-    rows = solution.jacobian.reshape(model.views, 2, -1)
-    damped = solution.information + 1e-12 * np.diag(np.diag(solution.information))
-    leverage = rows @ np.linalg.solve(damped, np.swapaxes(rows, 1, 2).reshape(-1, rows.shape[2], 2))
-    remaining = np.eye(2) * (1.0 + 1e-9) - leverage
-    solved = np.linalg.solve(remaining, solution.residuals[:, :, None])[:, :, 0]
-    return np.asarray(np.sum(solution.residuals * solved, axis=1))
+def _expected_gains(solution: Solution) -> FloatArray:
+    """Return (n,): the linear prediction of how much the cost falls without each view.
+
+    I − P = C⁻¹ − C⁻¹ Jt S⁻¹ Jtᵀ C⁻¹, of which the diagonal blocks are needed.
+    """
+    views = solution.views
+    residuals = views.residuals[0]
+    precision = views.solved(np.eye(len(residuals))[None])[0]
+    pull = precision @ views.by_target[0]
+    damped = solution.on_target + 1e-12 * np.diag(np.diag(views.by_target[0].T @ views.by_target[0]))
+    remaining = (precision - pull @ np.linalg.solve(damped, pull.T)).reshape(-1, 2, len(residuals) // 2, 2)
+    every = np.arange(len(remaining))
+    blocks = remaining[every, :, every] + 1e-9 * np.eye(2)
+    pairs = residuals.reshape(-1, 2)
+    return np.asarray(np.sum(pairs * np.linalg.solve(blocks, pairs[:, :, None])[:, :, 0], axis=1))

@@ -3,12 +3,17 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import RigidTransform
 
+from tapreach.estimation.camera_matrices import CameraMatrices
+from tapreach.estimation.map_solver import Solution
+from tapreach.estimation.motion_prior import CameraErrors
 from tapreach.estimation.observation import Observation
-from tapreach.estimation.view_model import ViewModel
+from tapreach.estimation.small_rotations import backward_rotations, cross_matrices
+from tapreach.estimation.view_model import ViewModel, homogeneous_points
 from tapreach.geometry.finite import FloatArray
-from tapreach.geometry.pose import right_jacobians, skew
+
+_TARGET_COLUMNS = [0, 1, 3]
 
 
 @dataclass(frozen=True)
@@ -19,47 +24,77 @@ class UncertainPoint:
     covariance: FloatArray
 
 
-def point_in_world(
-    model: ViewModel, first: Observation, x: FloatArray, covariance: FloatArray
-) -> UncertainPoint:
-    """Return the target in the frame of the poses given, held fixed by the first of them."""
-    errors = model.errors.by_normal[0]
-    shift, turn = np.split(errors @ x[3:], 2)
-    forth = Rotation.from_rotvec(turn).as_matrix()
-    bearing = np.array([x[0], x[1], 1.0])
-    homogeneous = forth @ bearing + x[2] * shift
-    by_x = np.empty((3, model.unknowns))
-    by_x[:, :2], by_x[:, 2] = forth[:, :2], shift
-    by_x[:, 3:] = x[2] * errors[:3] - forth @ skew(bearing) @ right_jacobians(turn[None])[0] @ errors[3:]
-    point, by_x = _dehomogenised(homogeneous, by_x, float(x[2]))
-    rotation = first.world_from_camera.rotation.as_matrix()
-    moved = rotation @ by_x
-    return UncertainPoint(
-        np.asarray(first.world_from_camera.apply(point)), np.asarray(moved @ covariance @ moved.T)
-    )
+@dataclass(frozen=True)
+class _Place:
+    """A point (3,) and its derivatives by (a, b, rho) (3, 3) and by z (3, k)."""
+
+    point: FloatArray
+    by_target: FloatArray
+    by_normals: FloatArray
+
+    def moved(self, a_from_b: RigidTransform) -> "_Place":
+        matrix = a_from_b.as_matrix()
+        rotation = matrix[:3, :3]
+        point = rotation @ self.point + matrix[:3, 3]
+        return _Place(point, rotation @ self.by_target, rotation @ self.by_normals)
+
+    def misplaced(self, errors: CameraErrors, normals: FloatArray) -> "_Place":
+        """Return it once more moved by the mount's own error, which moves the camera on the base."""
+        by_normals = self.by_normals + errors.by_mount[:3] - cross_matrices(self.point) @ errors.by_mount[3:]
+        shift, turn = np.split(errors.by_mount @ normals, 2)
+        back, _ = backward_rotations(turn)
+        return _Place(back.T @ self.point + shift, self.by_target, by_normals)
 
 
-def point_in_last_base(
-    model: ViewModel, last: Observation, x: FloatArray, covariance: FloatArray
-) -> UncertainPoint:
-    """Return the target as seen from where the base is at the last observation, which is what to drive by."""
-    prediction = model.predict(x)
-    point, by_x = _dehomogenised(prediction.points[-1], prediction.by_unknowns[-1], float(x[2]))
-    # The mount's own error moves the camera on the base once more.
-    by_x[:, 3:] += model.errors.by_mount[:3] - skew(point) @ model.errors.by_mount[3:]
-    rotation = last.base_from_camera.rotation.as_matrix()
-    moved = rotation @ by_x
-    shift, turn = np.split(model.errors.by_mount @ x[3:], 2)
-    on_mount = Rotation.from_rotvec(turn).apply(point) + shift
-    return UncertainPoint(
-        np.asarray(last.base_from_camera.apply(on_mount)), np.asarray(moved @ covariance @ moved.T)
-    )
+def points_in_world_and_base(
+    model: ViewModel, first: Observation, last: Observation, solution: Solution, target_covariance: FloatArray
+) -> tuple[UncertainPoint, UncertainPoint]:
+    """Return the target in the world, the frame of the poses given, held fixed by the first of them; and in
+    the base at the last observation, which is what to drive by.
+
+    target_covariance (3, 3): of (a, b, rho).
+    """
+    cameras = model.cameras(solution.x[None])
+    world = _in_first(cameras, solution.x).moved(first.world_from_camera)
+    seen = _in_last(cameras, solution.x)
+    base = seen.misplaced(model.errors, solution.x[3:]).moved(last.base_from_camera)
+    by_target = np.concatenate([world.by_target, base.by_target])
+    by_normals = np.concatenate([world.by_normals, base.by_normals])
+    joint = _propagated(solution, target_covariance, by_target, by_normals)
+    return UncertainPoint(world.point, joint[:3, :3]), UncertainPoint(base.point, joint[3:, 3:])
 
 
-def _dehomogenised(
-    homogeneous: FloatArray, by_x: FloatArray, inverse_depth: float
-) -> tuple[FloatArray, FloatArray]:
-    point = homogeneous / inverse_depth
-    by_point = by_x / inverse_depth
-    by_point[:, 2] -= point / inverse_depth
-    return point, by_point
+def _in_first(cameras: CameraMatrices, x: FloatArray) -> _Place:
+    """Return the target in the nominal first camera."""
+    homogeneous = homogeneous_points(x[None])
+    shift, forth = (np.zeros(3), np.eye(3)) if cameras.first is None else (each[0] for each in cameras.first)
+    matrix = np.column_stack([forth, shift])
+    return _dehomogenised(matrix, cameras.in_first_by_normals(homogeneous)[0], homogeneous[0])
+
+
+def _in_last(cameras: CameraMatrices, x: FloatArray) -> _Place:
+    homogeneous = homogeneous_points(x[None])
+    points = cameras.matrices @ homogeneous[0]
+    identity = np.broadcast_to(np.eye(3), (*points.shape, 3))
+    by_normals = cameras.by_normals(identity, points, homogeneous)
+    return _dehomogenised(cameras.matrices[0, -1], by_normals[0, -1], homogeneous[0])
+
+
+def _dehomogenised(matrix: FloatArray, by_normals: FloatArray, homogeneous: FloatArray) -> _Place:
+    inverse_depth = homogeneous[3]
+    point = matrix @ homogeneous / inverse_depth
+    by_target = matrix[:, _TARGET_COLUMNS] / inverse_depth
+    by_target[:, 2] -= point / inverse_depth
+    return _Place(point, by_target, by_normals / inverse_depth)
+
+
+def _propagated(
+    solution: Solution, target_covariance: FloatArray, by_target: FloatArray, by_normals: FloatArray
+) -> FloatArray:
+    """Return the covariance of what depends on target and pose errors by (r, 3) and (r, k): equation (8)."""
+    views = solution.views
+    seen = views.by_errors[0] @ by_normals.T
+    solved = views.solved(np.concatenate([views.by_target[0], seen], axis=1)[None])[0]
+    direct = by_target - seen.T @ solved[:, :3]
+    remaining = by_normals @ by_normals.T - seen.T @ solved[:, 3:]
+    return np.asarray(direct @ target_covariance @ direct.T + remaining)

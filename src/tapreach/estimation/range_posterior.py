@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tapreach.errors import InputError
-from tapreach.estimation.map_solver import Solution, descend
+from tapreach.estimation.gauss_newton import descended
+from tapreach.estimation.map_solver import Solution
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
@@ -68,7 +69,7 @@ def _grid(model: ViewModel, best: Solution, prior: RangePrior) -> FloatArray:
     everywhere = np.geomspace(prior.nearest, prior.farthest, _GRID)
     slant = float(np.linalg.norm([*best.x[:2], 1.0]))
     rho = best.inverse_depth
-    across = best.jacobian[:, 2]
+    across = best.views.by_target[0, :, 2]
     sd = 3.0 / max(float(np.sqrt(across @ across)), 1e-12)
     near_minimum = rho + sd * np.linspace(-4.0, 4.0, _GRID // 2)
     ranges = slant / near_minimum[near_minimum > 0.0]
@@ -78,19 +79,13 @@ def _grid(model: ViewModel, best: Solution, prior: RangePrior) -> FloatArray:
 
 def _profile(model: ViewModel, best: Solution, ranges: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least cost at each range, and the volume of what was profiled out (up to a factor)."""
-    costs, log_widths = np.full(len(ranges), np.inf), np.full(len(ranges), -np.inf)
-    free = np.arange(model.unknowns) != 2
-    slant = float(np.linalg.norm([*best.x[:2], 1.0]))
-    middle = int(np.argmin(np.abs(slant / ranges - best.inverse_depth)))
-    for order in (range(middle, len(ranges)), range(middle - 1, -1, -1)):
-        x = best.x.copy()
-        for i in order:
-            x[2] = slant / ranges[i]
-            found = descend(model, x, free, _TOLERANCE)
-            if found is None:
-                continue
-            x, costs[i] = found.x.copy(), found.cost
-            log_widths[i] = -0.5 * np.linalg.slogdet(found.information[np.ix_(free, free)])[1]
+    starts = np.repeat(best.x[None], len(ranges), axis=0)
+    starts[:, 2] = float(np.linalg.norm([*best.x[:2], 1.0])) / ranges
+    found = descended(model, starts, is_depth_free=False, tolerance=_TOLERANCE)
+    costs = found.costs
+    feasible = np.isfinite(costs)
+    log_widths = np.full(len(ranges), -np.inf)
+    log_widths[feasible] = -0.5 * found.take(feasible).log_information_without_depth()
     highest = log_widths.max()
     # No range at all may be feasible; the caller sees it by the costs.
     return costs, np.exp(log_widths - (highest if np.isfinite(highest) else 0.0))

@@ -4,6 +4,8 @@ The unknowns are one vector x = (a, b, rho, z): the target's bearing (a, b) = (X
 rho = 1/Z in the first camera, and the independent unit normals z behind the errors of the camera poses. With
 homogeneous points nothing is singular at infinity (rho = 0). Source of the parametrisation: Montiel, Civera
 and Davison, "Unified inverse depth parametrization for monocular SLAM" (RSS 2006).
+
+Everything is computed for m vectors x at once, as plain arrays: several starts, or a grid of ranges.
 """
 
 from collections.abc import Sequence
@@ -12,35 +14,29 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
+from tapreach.estimation.camera_matrices import CameraMatrices, camera_matrices
+from tapreach.estimation.linearised import Linearised
 from tapreach.estimation.motion_prior import CameraErrors
 from tapreach.estimation.observation import Observation
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.lens import distortion_jacobian
-from tapreach.geometry.pose import right_jacobians, skew
 
-
-@dataclass(frozen=True)
-class Prediction:
-    """Homogeneous target (n, 3) in each camera, and its derivative by x (n, 3, 3 + k)."""
-
-    points: FloatArray
-    by_unknowns: FloatArray
+_TARGET_COLUMNS = [0, 1, 3]  # of a projection matrix: those of a, b and rho
+_IN_FRONT = 1e-9  # least third homogeneous coordinate of a target before a camera
 
 
 @dataclass(frozen=True)
 class ViewModel:
     """n views of one target, stacked.
 
-    rotations (n, 3, 3), positions (n, 3): of each camera in the first. measured (n, 2): sighted (x/z, y/z).
-    weights (n, 2, 2): from an error in (x/z, y/z) to pixels over sigma. sigmas (n,) [px].
-    is_used (n,): False for views that were left out; they are predicted and weigh nothing.
+    nominal (n, 3, 4): projection from the first camera's homogeneous points into each camera, poses exact.
+    measured (n, 2): sighted (x/z, y/z). weights (n, 2, 2): from an error in (x/z, y/z) to pixels over sigma.
+    sigmas (n,) [px]. is_used (n,): False for views that were left out; they are predicted and weigh nothing.
     """
 
-    rotations: FloatArray
-    positions: FloatArray
+    nominal: FloatArray
     measured: FloatArray
     weights: FloatArray
     sigmas: FloatArray
@@ -58,84 +54,72 @@ class ViewModel:
         return 3 + int(self.errors.by_normal.shape[2])
 
     @cached_property
+    def positions(self) -> FloatArray:
+        """Position of each camera in the first (n, 3) [m]."""
+        back = np.swapaxes(self.nominal[:, :, :3], 1, 2)
+        return np.asarray(-(back @ self.nominal[:, :, 3:])[:, :, 0])
+
+    @cached_property
     def baseline(self) -> float:
         """The greatest distance between two of the cameras used [m]."""
         used = self.positions[self.is_used]
         between = used[:, None, :] - used[None, :, :]
         return float(np.sqrt(np.max(np.sum(between * between, axis=2))))
 
-    def at(self, inverse_depth: float) -> FloatArray:
-        """Return x for a target on the ray of the first view used, and poses without errors."""
+    def on_ray(self, inverse_depths: FloatArray) -> FloatArray:
+        """Return x (m, 3 + k) for targets on the ray of the first view used, and poses without errors."""
         view = int(np.argmax(self.is_used))
-        in_first = self.rotations[view] @ [*self.measured[view], 1.0] + inverse_depth * self.positions[view]
-        x = np.zeros(self.unknowns)
-        x[:3] = [in_first[0], in_first[1], inverse_depth] / np.where(in_first[2] > 1e-9, in_first[2], 1e-9)
+        direction = self.nominal[view, :, :3].T @ [*self.measured[view], 1.0]
+        in_first = direction + inverse_depths[:, None] * self.positions[view]
+        x = np.zeros((len(inverse_depths), self.unknowns))
+        x[:, :2], x[:, 2] = in_first[:, :2], inverse_depths
+        x[:, :3] /= np.maximum(in_first[:, 2:], 1e-9)
         return x
 
-    def predict(self, x: FloatArray) -> Prediction:
-        """Return equations (3) to (5) and their derivatives."""
-        bearing, rho = np.array([x[0], x[1], 1.0]), float(x[2])
-        if self.unknowns == 3:
-            return self._predict_exact(bearing, rho)
-        errors = self.errors.by_normal @ x[3:]
-        shifts, turns = errors[:, :3], errors[:, 3:]
-        forth, back = Rotation.from_rotvec(turns[0]).as_matrix(), Rotation.from_rotvec(-turns).as_matrix()
-        turned = forth @ bearing
-        arrived = turned + rho * shifts[0]
-        into_view = np.swapaxes(self.rotations, 1, 2)
-        points = back @ (into_view @ (arrived - rho * self.positions)[:, :, None] - rho * shifts[:, :, None])
-        points = points[:, :, 0]
-        onward = back @ into_view
-        by_x = np.empty((self.views, 3, self.unknowns))
-        by_x[:, :, :2] = onward @ forth[:, :2]
-        offset = (shifts[0] - self.positions)[:, :, None]
-        by_x[:, :, 2] = (onward @ offset - back @ shifts[:, :, None])[:, :, 0]
-        slopes = right_jacobians(turns)
-        by_x[:, :, 3:] = -rho * (back @ self.errors.by_normal[:, :3])
-        by_x[:, :, 3:] += (skew(points) @ slopes) @ self.errors.by_normal[:, 3:]
-        first = self.errors.by_normal[0]
-        by_first = rho * first[:3] - forth @ skew(bearing) @ slopes[0] @ first[3:]
-        by_x[:, :, 3:] += onward @ by_first
-        return Prediction(points, by_x)
+    def cameras(self, x: FloatArray) -> CameraMatrices:
+        """Return the cameras that the pose errors in x (m, 3 + k) make of the nominal ones."""
+        return camera_matrices(self.nominal, self.errors.by_normal, x[:, 3:])
 
-    def _predict_exact(self, bearing: FloatArray, rho: float) -> Prediction:
-        into_view = np.swapaxes(self.rotations, 1, 2)
-        points = (into_view @ (bearing - rho * self.positions)[:, :, None])[:, :, 0]
-        by_x = np.empty((self.views, 3, 3))
-        by_x[:, :, :2] = into_view[:, :, :2]
-        by_x[:, :, 2] = -(into_view @ self.positions[:, :, None])[:, :, 0]
-        return Prediction(points, by_x)
+    def linearised(self, x: FloatArray) -> Linearised:
+        """Return residuals over sigma at x (m, 3 + k) and their derivatives, 0 for views left out."""
+        cameras = self.cameras(x)
+        homogeneous = homogeneous_points(x)
+        points = (cameras.matrices @ homogeneous[:, None, :, None])[..., 0]
+        depths = points[..., 2]
+        is_in_front = np.all((depths > _IN_FRONT) | ~self.is_used, axis=1)
+        safe = np.where((depths > _IN_FRONT) & self.is_used, depths, 1.0)[..., None]
+        projected = points[..., :2] / safe
+        weights = self._used_weights / safe[..., None]
+        slopes = np.concatenate([weights, -weights @ projected[..., None]], axis=-1)
+        residuals = (self._used_weights @ (projected - self.measured)[..., None])[..., 0]
+        by_target = slopes @ cameras.matrices[..., _TARGET_COLUMNS]
+        by_errors = cameras.by_normals(slopes, points, homogeneous)
+        count = len(x)
+        return Linearised(
+            x,
+            residuals.reshape(count, -1),
+            by_target.reshape(count, 2 * self.views, 3),
+            by_errors.reshape(count, 2 * self.views, -1),
+            is_in_front,
+        )
 
     def costs_without_pose_errors(self, starts: FloatArray) -> FloatArray:
         """Return the squared residuals over sigma (m,) of (a, b, rho) (m, 3); infinite behind a view used."""
-        bearings = np.concatenate([starts[:, :2], np.ones((len(starts), 1))], axis=1)
-        ways = bearings[:, None, :] - starts[:, 2, None, None] * self.positions
-        points = np.einsum("nji,mnj->mni", self.rotations, ways)[:, self.is_used]
-        in_front = np.all(points[:, :, 2] > 1e-9, axis=1)
-        projected = points[:, :, :2] / np.where(points[:, :, 2:] > 1e-9, points[:, :, 2:], 1.0)
-        errors = projected - self.measured[self.is_used]
-        residuals = np.einsum("nij,mnj->mni", self.weights[self.is_used], errors)
-        return np.where(in_front, np.sum(residuals**2, axis=(1, 2)), np.inf)
+        homogeneous = homogeneous_points(starts)
+        points = self.nominal @ homogeneous[:, None, :, None]
+        depths = points[..., 2, 0]
+        is_in_front = np.all((depths > _IN_FRONT) | ~self.is_used, axis=1)
+        projected = points[..., :2, 0] / np.where(depths > _IN_FRONT, depths, 1.0)[..., None]
+        residuals = self._used_weights @ (projected - self.measured)[..., None]
+        return np.where(is_in_front, np.sum(residuals * residuals, axis=(1, 2, 3)), np.inf)
 
-    def is_in_front(self, prediction: Prediction) -> bool:
-        """Tell whether every view used has the target's direction in front of it."""
-        return bool(np.all(prediction.points[self.is_used, 2] > 1e-9))
-
-    def whitened(self, prediction: Prediction) -> tuple[FloatArray, FloatArray]:
-        """Return residuals over sigma (n, 2) and their derivative by x (n, 2, 3 + k), 0 where left out."""
-        depth = np.where(self.is_used, prediction.points[:, 2], 1.0)[:, None]
-        projected = prediction.points[:, :2] / depth
-        weights = self.weights * self.is_used[:, None, None]
-        residuals = (weights @ (projected - self.measured)[:, :, None])[:, :, 0]
-        sideways = prediction.by_unknowns[:, :2] - projected[:, :, None] * prediction.by_unknowns[:, 2:]
-        return residuals, weights @ (sideways / depth[:, :, None])
-
-    def residuals_px(self, prediction: Prediction) -> FloatArray:
-        """Return predicted minus observed (n, 2) [px] of all views; infinite where it is behind one."""
-        depth = prediction.points[:, 2, None]
-        projected = prediction.points[:, :2] / np.where(depth > 1e-9, depth, 1.0)
+    def residuals_px(self, x: FloatArray) -> FloatArray:
+        """Return predicted minus observed (n, 2) [px] at x (3 + k,); infinite where it is behind a view."""
+        points = self.cameras(x[None]).matrices[0] @ [x[0], x[1], 1.0, x[2]]
+        depth = points[:, 2, None]
+        projected = points[:, :2] / np.where(depth > _IN_FRONT, depth, 1.0)
         residuals = (self.weights @ (projected - self.measured)[:, :, None])[:, :, 0]
-        return np.where(depth > 1e-9, residuals * self.sigmas[:, None], np.inf)
+        return np.where(depth > _IN_FRONT, residuals * self.sigmas[:, None], np.inf)
 
     def without(self, view: int) -> "ViewModel":
         """Return the same model with one more view left out."""
@@ -143,27 +127,42 @@ class ViewModel:
         is_used[view] = False
         return replace(self, is_used=is_used)
 
+    @cached_property
+    def _used_weights(self) -> FloatArray:
+        return self.weights * self.is_used[:, None, None]
+
+
+def homogeneous_points(x: FloatArray) -> FloatArray:
+    """Return equation (2), (a, b, 1, rho): (m, 4), for x (m, 3 or more)."""
+    points = np.ones((len(x), 4))
+    points[:, :2], points[:, 3] = x[:, :2], x[:, 2]
+    return points
+
 
 def view_model(observations: Sequence[Observation], errors: CameraErrors) -> ViewModel:
     """Return the stacked model of the observations, the first one as reference."""
-    first_from_world = observations[0].world_from_camera.inv()
-    poses = [first_from_world * view.world_from_camera for view in observations]
     sigmas = np.array([view.pixel_sigma for view in observations])
+    pixels = np.array([(view.pixel.u, view.pixel.v) for view in observations])
     measured = np.empty((len(observations), 2))
     weights = np.empty((len(observations), 2, 2))
-    for camera in {view.camera for view in observations}:
-        rows = [i for i, view in enumerate(observations) if view.camera == camera]
-        measured[rows] = camera.normalise([observations[i].pixel.to_array() for i in rows])
+    cameras = [view.camera for view in observations]
+    for camera in set(cameras):
+        rows = [i for i, each in enumerate(cameras) if each is camera or each == camera]
+        measured[rows] = camera.normalise(pixels[rows])
         weights[rows] = pixel_weights(camera, measured[rows]) / sigmas[rows, None, None]
-    return ViewModel(
-        np.stack([pose.rotation.as_matrix() for pose in poses]),
-        np.stack([np.asarray(pose.translation) for pose in poses]),
-        measured,
-        weights,
-        sigmas,
-        errors,
-        np.ones(len(observations), dtype=bool),
-    )
+    used = np.ones(len(observations), dtype=bool)
+    return ViewModel(nominal_cameras(observations), measured, weights, sigmas, errors, used)
+
+
+def nominal_cameras(observations: Sequence[Observation]) -> FloatArray:
+    """Return (n, 3, 4): the way from points of the first camera to points of each, as given."""
+    bases = np.array([view.world_from_base.as_matrix() for view in observations])
+    mounts = np.array([view.base_from_camera.as_matrix() for view in observations])
+    world_from_camera = bases @ mounts
+    rotations = np.swapaxes(world_from_camera[:, :3, :3], 1, 2)
+    offsets = world_from_camera[0, :3, 3] - world_from_camera[:, :3, 3]
+    first = rotations @ world_from_camera[0, :3, :3]
+    return np.concatenate([first, rotations @ offsets[:, :, None]], axis=2)
 
 
 def pixel_weights(camera: Camera, normalised: FloatArray) -> FloatArray:

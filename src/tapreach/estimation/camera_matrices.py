@@ -1,0 +1,79 @@
+"""Projection matrices of cameras whose poses have errors, and how a target moves in them (docs, 3 and 4)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tapreach.estimation.small_rotations import backward_rotations, cross_matrices
+from tapreach.geometry.finite import FloatArray
+
+
+@dataclass(frozen=True)
+class CameraMatrices:
+    """m guesses of n cameras.
+
+    matrices (m, n, 3, 4): to each camera from homogeneous points of the nominal first one, (4) and (5).
+    back (m, n, 3, 3): exp(-phi). slopes (m, n, 3, 3): right Jacobians at phi. into_view (n, 3, 3): nominal
+    rotations. by_normal (n, 6, k): errors per unit normal. first: None where the first camera has no errors,
+    else its position (m, 3) and rotation (m, 3, 3) in the nominal one.
+    """
+
+    matrices: FloatArray
+    back: FloatArray
+    slopes: FloatArray
+    into_view: FloatArray
+    by_normal: FloatArray
+    first: tuple[FloatArray, FloatArray] | None
+
+    def by_normals(self, slopes: FloatArray, points: FloatArray, homogeneous: FloatArray) -> FloatArray:
+        """Return slopes · d points / d z: (m, n, r, k).
+
+        slopes (m, n, r, 3): of anything by the points. points (m, n, 3): the targets in the cameras.
+        homogeneous (m, 4): the same in the nominal first one.
+        """
+        rho = homogeneous[:, 3]
+        if self.by_normal.shape[2] == 0:
+            return np.zeros((*slopes.shape[:-1], 0))
+        by_shift = slopes @ (-rho[:, None, None, None] * self.back)
+        by_turn = slopes @ (cross_matrices(points) @ self.slopes)
+        by_x = np.concatenate([by_shift, by_turn], axis=-1) @ self.by_normal
+        if self.first is not None:
+            onward = slopes @ (self.back @ self.into_view)
+            by_x += onward @ self.in_first_by_normals(homogeneous)[:, None]
+        return np.asarray(by_x)
+
+    def in_first_by_normals(self, homogeneous: FloatArray) -> FloatArray:
+        """Return d (the target in the nominal first camera, times rho) / d z: (m, 3, k)."""
+        errors = self.by_normal[0]
+        shifted = homogeneous[:, 3, None, None] * errors[:3]
+        if self.first is None:
+            return np.asarray(shifted)
+        forth = self.first[1] @ cross_matrices(homogeneous[:, :3]) @ self.slopes[:, 0]
+        return np.asarray(shifted - forth @ errors[3:])
+
+
+def camera_matrices(nominal: FloatArray, by_normal: FloatArray, normals: FloatArray) -> CameraMatrices:
+    """Return the cameras for normals (m, k), given the nominal ones (n, 3, 4) and their errors (n, 6, k)."""
+    count, views = len(normals), len(nominal)
+    into_view = nominal[:, :, :3]
+    if by_normal.shape[2] == 0:
+        still = np.broadcast_to(np.eye(3), (count, views, 3, 3))
+        matrices = np.broadcast_to(nominal, (count, views, 3, 4))
+        return CameraMatrices(matrices, still, still, into_view, by_normal, None)
+    errors = (normals @ by_normal.reshape(6 * views, -1).T).reshape(count, views, 6)
+    back, slopes = backward_rotations(errors[..., 3:])
+    first, ahead = None, nominal
+    if by_normal[0].any():
+        shift, forth = errors[:, 0, :3], np.swapaxes(back[:, 0], -1, -2)
+        first = shift, forth
+        ahead = nominal @ _as_poses(shift, forth)[:, None]
+    else:
+        ahead = np.broadcast_to(nominal, (count, views, 3, 4)).copy()
+    ahead[..., 3] -= errors[..., :3]
+    return CameraMatrices(back @ ahead, back, slopes, into_view, by_normal, first)
+
+
+def _as_poses(shifts: FloatArray, rotations: FloatArray) -> FloatArray:
+    poses = np.zeros((len(shifts), 4, 4))
+    poses[:, :3, :3], poses[:, :3, 3], poses[:, 3, 3] = rotations, shifts, 1.0
+    return poses

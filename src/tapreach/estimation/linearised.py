@@ -1,0 +1,82 @@
+"""The views linearised about some x, and the pose errors eliminated (docs/estimation.md, 6).
+
+There are fewer residuals than pose errors, so that the elimination is done on the side of the residuals: with
+C = I + Jz Jzᵀ the information on the target is Jtᵀ C⁻¹ Jt, equal to the Schur complement of all the unknowns.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from tapreach.geometry.finite import FloatArray
+
+Index = npt.NDArray[np.intp] | npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """m points x (m, 3 + k): residuals over sigma (m, 2n), and their derivatives by (a, b, rho) (m, 2n, 3)
+    and by z (m, 2n, k).
+
+    is_in_front (m,): whether all views used have the target before them; where not, nothing else means much.
+    """
+
+    x: FloatArray
+    residuals: FloatArray
+    by_target: FloatArray
+    by_errors: FloatArray
+    is_in_front: npt.NDArray[np.bool_]
+
+    @property
+    def costs(self) -> FloatArray:
+        """(m,): squared residuals over sigma plus |z|², equation (6); infinite where not in front."""
+        normals = self.x[:, 3:]
+        costs = np.sum(self.residuals * self.residuals, axis=1) + np.sum(normals * normals, axis=1)
+        return np.where(self.is_in_front, costs, np.inf)
+
+    def noise(self, damping: FloatArray | None = None) -> FloatArray:
+        """Return C (m, 2n, 2n), the covariance of the residuals with the pose errors in it; damping (m,)."""
+        covariance = self.by_errors @ np.swapaxes(self.by_errors, 1, 2)
+        if damping is not None and damping.any():
+            covariance /= (1.0 + damping)[:, None, None]
+        rows = np.arange(covariance.shape[1])
+        covariance[:, rows, rows] += 1.0
+        return np.asarray(covariance)
+
+    def solved(self, right: FloatArray, damping: FloatArray | None = None) -> FloatArray:
+        """Return C⁻¹ right (m, 2n, r)."""
+        if self.by_errors.shape[2] == 0:
+            return right
+        return np.asarray(np.linalg.solve(self.noise(damping), right), dtype=np.float64)
+
+    def on_target(self) -> FloatArray:
+        """Return the information (m, 3, 3) on (a, b, rho), the pose errors marginalised: equation (7)."""
+        return np.asarray(np.swapaxes(self.by_target, 1, 2) @ self.solved(self.by_target))
+
+    def log_information_without_depth(self) -> FloatArray:
+        """Return the logarithm (m,) of the determinant of the information on all unknowns but rho."""
+        noise = self.noise()
+        bearing = self.by_target[..., :2]
+        on_bearing = np.swapaxes(bearing, 1, 2) @ np.linalg.solve(noise, bearing)
+        return np.asarray(np.linalg.slogdet(noise)[1] + np.linalg.slogdet(on_bearing)[1])
+
+    def take(self, index: Index) -> "Linearised":
+        """Return some of the m points."""
+        return Linearised(*(getattr(self, each)[index] for each in _FIELDS))
+
+    def updated(self, other: "Linearised", where: npt.NDArray[np.bool_]) -> "Linearised":
+        """Return this one with those points of `other` (m as well) where (m,) says so."""
+        return self.replaced(np.flatnonzero(where), other.take(where))
+
+    def replaced(self, index: Index, part: "Linearised") -> "Linearised":
+        """Return this one with the points at `index` replaced by those of `part`."""
+        if len(part.x) == len(self.x):
+            return part
+        copies = {each: getattr(self, each).copy() for each in _FIELDS}
+        for each, values in copies.items():
+            values[index] = getattr(part, each)
+        return Linearised(**copies)
+
+
+_FIELDS = tuple(each.name for each in fields(Linearised))
