@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from tapreach.bench.figure import Figure
+from tapreach.bench.grid import Grid
 from tapreach.bench.report import Report, Section, read_report
 from tapreach.errors import ConfigError
 
@@ -13,6 +14,7 @@ Generated from `docs/benchmarks/*.json`, the last full run of each bench; to ren
 
     tapreach bench video --json docs/benchmarks/video.json
     tapreach bench control --json docs/benchmarks/control.json
+    tapreach bench accuracy --json docs/benchmarks/accuracy.json
     tapreach bench document
 
 Milliseconds belong to the machine named with each bench. What carries over to another machine are the
@@ -40,15 +42,30 @@ def _full_report(path: Path) -> Report:
 
 def _report_text(report: Report) -> str:
     return "\n".join(
-        [f"## {report.title}", "", f"`tapreach bench {report.bench}` on: {report.machine}.", ""]
+        [
+            f"## {report.title}",
+            "",
+            f"`tapreach bench {report.bench}` on: {report.machine}.{_seed(report)}",
+            "",
+        ]
         + [_section_text(section) for section in report.sections]
     )
+
+
+def _seed(report: Report) -> str:
+    return "" if report.seed is None else f" Seed {report.seed}."
 
 
 def _section_text(section: Section) -> str:
     rows = ["| figure | measured | wanted | holds | note |", "|---|---:|---:|---|---|"]
     rows += [_row(figure) for figure in section.figures]
-    return "\n".join([f"### {section.title}", "", section.method, "", *rows, ""])
+    grid = [] if section.grid is None else _grid_rows(section.grid)
+    return "\n".join([f"### {section.title}", "", section.method, "", *rows, "", *grid])
+
+
+def _grid_rows(grid: Grid) -> list[str]:
+    head = ["| " + " | ".join(grid.columns) + " |", "|---" * len(grid.columns) + "|"]
+    return [*head, *("| " + " | ".join(row) + " |" for row in grid.rows), ""]
 
 
 def _row(figure: Figure) -> str:

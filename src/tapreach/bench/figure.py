@@ -1,5 +1,6 @@
 """One measured number, the limit it is held to, and what kind of number it is."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -70,6 +71,11 @@ class Figure:
     def shown(self) -> str:
         """The value with its unit, three significant digits; '—' when it was not measured."""
         return "—" if self.value is None else f"{plain(self.value)} {self.unit}".strip()
+
+
+def known(value: float) -> float | None:
+    """Return the value of a figure: None for NaN, what a mean over nothing is."""
+    return None if math.isnan(value) else value
 
 
 def plain(value: float) -> str:

@@ -9,6 +9,7 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from tapreach.bench.figure import Figure
+from tapreach.bench.grid import Grid
 from tapreach.errors import ConfigError
 
 
@@ -61,6 +62,7 @@ class Section:
     title: str
     method: str
     figures: tuple[Figure, ...]
+    grid: Grid | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,8 @@ class Report:
     machine: Machine
     is_smoke: bool
     sections: tuple[Section, ...]
+    seed: int | None = None
+    """That repeats the run; None where only a default was used."""
 
     @property
     def figures(self) -> tuple[Figure, ...]:

@@ -26,6 +26,7 @@ async def run_series(
     measurements: Sequence[Measurement],
     on_section: Callable[[Section], None],
     clock: Clock,
+    seed: int | None = None,
 ) -> Report:
     """Return the report; `on_section` hears of each section as soon as it is measured.
 
@@ -37,7 +38,7 @@ async def run_series(
         section = await _section(measurement)
         on_section(section)
         sections.append(section)
-    return Report(bench, title, machine, is_smoke, tuple(sections))
+    return Report(bench, title, machine, is_smoke, tuple(sections), seed)
 
 
 async def _section(measurement: Measurement) -> Section:

@@ -4,6 +4,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tapreach.bench.figure import Figure
+from tapreach.bench.grid import Grid
 from tapreach.bench.report import Report, Section
 
 _VERDICT = {True: "[green]holds[/]", False: "[red]does not hold[/]", None: ""}
@@ -26,6 +27,14 @@ def section_table(section: Section) -> Table:
     table.add_column("note")
     for figure in section.figures:
         table.add_row(*_cells(figure))
+    return table
+
+
+def grid_table(grid: Grid) -> Table:
+    """Return the table of what is read side by side."""
+    table = Table(*grid.columns)
+    for row in grid.rows:
+        table.add_row(*row)
     return table
 
 

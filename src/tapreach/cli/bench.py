@@ -1,6 +1,7 @@
-"""`tapreach bench`: measure video and control, and write the page that shows the last full runs."""
+"""`tapreach bench`: measure video, control and accuracy, and write the page that shows the last full runs."""
 
 import asyncio
+import secrets
 from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,11 +9,13 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from tapreach.bench import accuracy as accuracy_bench
 from tapreach.bench import control as control_bench
 from tapreach.bench import video as video_bench
+from tapreach.bench.accuracy_plan import AccuracyPlan, smoke_plan
 from tapreach.bench.document import benchmarks_document
 from tapreach.bench.report import Report, Section, write_report
-from tapreach.bench.table import print_closing, section_table
+from tapreach.bench.table import grid_table, print_closing, section_table
 from tapreach.robot.clock import MonotonicClock
 
 bench = typer.Typer(
@@ -50,6 +53,25 @@ def control(
 
 
 @bench.command()
+def accuracy(
+    smoke: Smoke = False,
+    trials: Annotated[int, typer.Option(min=2, help="in each of 48 settings")] = 400,
+    motions: Annotated[int, typer.Option(min=30, help="random ones, a fifth of them singular")] = 4000,
+    comparisons: Annotated[int, typer.Option(min=1, help="trials in each setting beside the peers")] = 100,
+    jobs: Annotated[int, typer.Option(min=1, help="processes, but for what is timed")] = 1,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """The estimator in simulation against its bound, its own regions, and other libraries."""
+    used = secrets.randbits(32) if seed is None else seed
+    plan = smoke_plan(used) if smoke else AccuracyPlan(used, trials, motions, comparisons, jobs)
+    Console().print(f"seed {used}", highlight=False)
+    _run(lambda on_section: accuracy_bench.run_accuracy(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
 def document(docs: Annotated[Path, typer.Option(help="folder of the documents")] = Path("docs")) -> None:
     """Write benchmarks.md in the folder of the documents from the JSON in its folder benchmarks."""
     page = docs / "benchmarks.md"
@@ -61,7 +83,13 @@ def _run(
     measure: Callable[[Callable[[Section], None]], Coroutine[Any, Any, Report]], json: Path | None
 ) -> None:
     console = Console()
-    report = asyncio.run(measure(lambda section: console.print(section_table(section))))
+
+    def show(section: Section) -> None:
+        console.print(section_table(section))
+        if section.grid is not None:
+            console.print(grid_table(section.grid))
+
+    report = asyncio.run(measure(show))
     print_closing(report, console)
     path = json or Path("out") / "bench" / f"{report.bench}.json"
     write_report(report, path)

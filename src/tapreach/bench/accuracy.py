@@ -1,0 +1,41 @@
+"""The accuracy bench: the estimator in simulation against its bound, its own regions and its peers."""
+
+from collections.abc import Awaitable, Callable
+
+from tapreach.bench.accuracy_beside import measure_beside
+from tapreach.bench.accuracy_cells import CellResult, cells_section, intervals_section, run_cells
+from tapreach.bench.accuracy_motions import measure_motions
+from tapreach.bench.accuracy_odd_taps import measure_odd_taps
+from tapreach.bench.accuracy_plan import AccuracyPlan
+from tapreach.bench.accuracy_slips import measure_slips
+from tapreach.bench.report import Report, Section
+from tapreach.bench.series import Measurement, run_series
+from tapreach.robot.clock import Clock
+
+
+async def run_accuracy(plan: AccuracyPlan, on_section: Callable[[Section], None], clock: Clock) -> Report:
+    """Run the whole bench; the times first, while nothing else of it runs."""
+    results: list[CellResult] = []
+
+    def every_setting() -> Section:
+        results.extend(run_cells(plan))
+        return cells_section(results, plan.trials)
+
+    measurements = (
+        Measurement("Beside others", _later(lambda: measure_beside(plan, clock))),
+        Measurement("Every setting", _later(every_setting)),
+        Measurement("95 % range interval", _later(lambda: intervals_section(results))),
+        Measurement("Random motions", _later(lambda: measure_motions(plan))),
+        Measurement("One slipped tap among five", _later(lambda: measure_slips(plan))),
+        Measurement("Odd taps", _later(lambda: measure_odd_taps(plan))),
+    )
+    return await run_series(
+        "accuracy", "Accuracy", plan.is_smoke, measurements, on_section, clock, seed=plan.seed
+    )
+
+
+def _later(measure: Callable[[], Section]) -> Callable[[], Awaitable[Section]]:
+    async def run() -> Section:
+        return measure()
+
+    return run

@@ -1,0 +1,72 @@
+"""The accuracy bench in its short form and with a fixed seed. Figures are judged by full runs only."""
+
+import asyncio
+
+import pytest
+from typer.testing import CliRunner
+
+from tapreach.bench.accuracy import run_accuracy
+from tapreach.bench.accuracy_plan import smoke_plan
+from tapreach.bench.report import read_report, write_report
+from tapreach.cli.main import app
+from tapreach.robot.clock import MonotonicClock
+
+SEED = 20261122
+
+
+@pytest.fixture(scope="module")
+def report():
+    return asyncio.run(run_accuracy(smoke_plan(SEED), lambda section: None, MonotonicClock()))
+
+
+def figures(report):
+    return {(s.title, f.name): f.value for s in report.sections for f in s.figures}
+
+
+def test_every_part_is_measured(report):
+    assert [section.title for section in report.sections] == [
+        "Beside others",
+        "Every setting",
+        "95 % range interval",
+        "Random motions",
+        "One slipped tap among five",
+        "Taps that are correlated or heavy-tailed",
+    ]
+    assert report.is_smoke
+    assert report.seed == SEED
+
+
+def test_tables_show_every_setting_and_every_peer(report):
+    beside, settings = (section.grid for section in report.sections[:2])
+    assert len(settings.rows) == 48
+    assert len(beside.rows) == 12
+    assert all(len(row) == len(grid.columns) for grid in (beside, settings) for row in grid.rows)
+    assert {"tapreach", "OpenCV", "paper"} < set(beside.columns)
+
+
+def test_nothing_breaks_and_nothing_singular_gets_a_range(report):
+    measured = figures(report)
+    assert measured["Random motions", "exceptions"] == 0
+    assert measured["Random motions", "answers behind a camera"] == 0
+    assert measured["Random motions", "motions"] >= 24
+
+
+def test_errors_are_of_the_size_of_the_bound(report):
+    together = figures(report)["Every setting", "error over bound: all settings together"]
+    assert 0.6 < together < 1.6
+
+
+def test_report_is_kept_whole(report, tmp_path):
+    write_report(report, tmp_path / "accuracy.json")
+    assert read_report(tmp_path / "accuracy.json") == report
+
+
+def test_command_offers_seed_trials_and_json():
+    result = CliRunner().invoke(app, ["bench", "accuracy", "--help"], catch_exceptions=False)
+    assert result.exit_code == 0
+    assert all(option in result.output for option in ("--seed", "--trials", "--smoke", "--json"))
+
+
+@pytest.mark.parametrize("wrong", [["--trials", "0"], ["--seed", "-1"], ["--jobs", "none"]])
+def test_impossible_plan_is_refused(wrong):
+    assert CliRunner().invoke(app, ["bench", "accuracy", *wrong]).exit_code == 2
