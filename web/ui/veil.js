@@ -3,7 +3,7 @@
  *
  * @typedef {{kind: string, title: string, text: string, canRetry: boolean}} Notice
  */
-import { number } from "../view/words.js";
+import { number, sentence } from "../view/words.js";
 import { byId, setText } from "./dom.js";
 
 export class Veil {
@@ -23,7 +23,7 @@ export class Veil {
     veil.hidden = notice === null;
     veil.dataset.kind = notice?.kind ?? "";
     setText(byId("veil-title"), notice?.title ?? "");
-    setText(byId("veil-text"), notice?.text ?? "");
+    setText(byId("veil-text"), sentence(notice?.text ?? ""));
     byId("veil-action").hidden = !notice?.canRetry;
   }
 
