@@ -5,6 +5,7 @@ C = I + Jz Jzᵀ the information on the target is Jtᵀ C⁻¹ Jt, equal to the 
 """
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +29,7 @@ class Linearised:
     by_errors: FloatArray
     is_in_front: npt.NDArray[np.bool_]
 
-    @property
+    @cached_property
     def costs(self) -> FloatArray:
         """(m,): squared residuals over sigma plus |z|², equation (6); infinite where not in front."""
         normals = self.x[:, 3:]

@@ -66,7 +66,7 @@ def _answer(
 ) -> PointEstimate:
     status, reason = verdict(model, solution, depth)
     rejected = tuple(int(i) for i in np.flatnonzero(~model.is_used))
-    residuals_px = model.residuals_px(solution.x)
+    residuals_px = _residuals_px(model, solution)
     if status is Status.DEGENERATE:
         return _unknown(status, reason, model, residuals_px)
     covariance = covariance_of(solution.on_target)
@@ -92,6 +92,12 @@ def _answer(
         residuals_px=residuals_px,
         rejected_views=rejected,
     )
+
+
+def _residuals_px(model: ViewModel, solution: Solution) -> FloatArray:
+    if np.all(model.is_used):
+        return solution.views.residuals.reshape(-1, 2) * model.sigmas[:, None]
+    return model.residuals_px(solution.x)
 
 
 def _unknown(

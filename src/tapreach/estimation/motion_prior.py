@@ -1,6 +1,5 @@
 """What is known of the poses' errors: a linear map from independent unit normals (docs/estimation.md, 3)."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,10 +9,9 @@ from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
 from tapreach.estimation.observation import Observation
-from tapreach.estimation.odometry_noise import OdometryNoise, covariance_root, pose_errors
+from tapreach.estimation.odometry_noise import OdometryNoise, chain_errors, covariance_root
 from tapreach.geometry.finite import FloatArray, not_negative
 from tapreach.geometry.gaussian import require_covariance
-from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import skew
 
 Motion = OdometryNoise | npt.ArrayLike | None
@@ -74,11 +72,12 @@ def _base_errors(observations: Sequence[Observation], motion: Motion) -> FloatAr
 def _odometry_errors(observations: Sequence[Observation], noise: OdometryNoise) -> FloatArray:
     matrices = np.array([view.world_from_base.as_matrix() for view in observations])
     start, offsets = matrices[0, :3, :3], matrices[:, :3, 3] - matrices[0, :3, 3]
-    places, ahead = (offsets @ start).tolist(), (matrices[:, :3, 0] @ start).tolist()
-    poses = [PlanarPose(x, y, math.atan2(s, c)) for (x, y, _), (c, s, _) in zip(places, ahead, strict=True)]
-    planar = pose_errors(poses, noise)
+    ahead = matrices[:, :3, 0] @ start
+    places = offsets @ start
+    headings = np.arctan2(ahead[:, 1], ahead[:, 0])
+    planar = chain_errors(np.column_stack([places[:, :2], headings]), noise)
     used = np.any(planar != 0.0, axis=(0, 1))
-    errors = np.zeros((len(poses), 6, int(used.sum())))
+    errors = np.zeros((len(observations), 6, int(used.sum())))
     errors[:, _PLANAR_ROWS] = planar[:, :, used]
     return errors
 

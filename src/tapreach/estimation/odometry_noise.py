@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from tapreach.geometry.finite import FloatArray, not_negative
-from tapreach.geometry.planar_motion import PlanarPose, wrapped
+from tapreach.geometry.planar_motion import PlanarPose
 
 
 @dataclass(frozen=True)
@@ -42,83 +42,105 @@ class OdometryNoise:
 
         Order x, y [m], heading [rad], perturbing on the right (in the frame after the step).
         """
-        way = _split(step)
-        columns = _step_columns(way)
-        turn = self.turn_per_sqrt_rad**2, self.turn_fraction**2
-        distance = abs(way.advance)
+        return np.asarray(self.step_covariances(np.array([[step.x, step.y, step.heading]]))[0])
+
+    def step_covariances(self, steps: FloatArray) -> FloatArray:
+        """Return `step_covariance` (n, 3, 3) of many steps (n, 3), each x, y [m], heading [rad]."""
+        first_turn, advance, last_turn = _split(steps)
+        columns = _step_columns(advance, last_turn)
+        turns, distance = np.abs(np.stack([first_turn, last_turn])), np.abs(advance)
+        by_turns = self.turn_per_sqrt_rad**2 * turns + self.turn_fraction**2 * turns**2
+        by_advance = self.advance_per_sqrt_m**2 * distance + self.advance_fraction**2 * distance**2
         drift = self.turn_per_sqrt_m**2 * distance
-        variances = [
-            turn[0] * abs(way.first_turn) + turn[1] * way.first_turn**2,
-            turn[0] * abs(way.last_turn) + turn[1] * way.last_turn**2,
-            self.advance_per_sqrt_m**2 * distance + self.advance_fraction**2 * distance**2,
-            drift,
-            # A heading that drifts on the way also leaves this part of the sideways error unexplained.
-            self.slip_per_sqrt_m**2 * distance + drift * distance**2 / 12.0,
-        ]
-        return np.asarray((columns * variances) @ columns.T)
+        # A heading that drifts on the way also leaves this part of the sideways error unexplained.
+        slip = self.slip_per_sqrt_m**2 * distance + drift * distance**2 / 12.0
+        variances = np.stack([*by_turns, by_advance, drift, slip], axis=1)
+        return np.asarray((columns * variances[:, None]) @ np.swapaxes(columns, 1, 2))
 
-    def scale_columns(self, step: PlanarPose) -> FloatArray:
-        """Return (3, 2): the step's error for one sigma of the shared advance scale and turn scale."""
-        way = _split(step)
-        columns = _step_columns(way)
-        by_turn = columns[:, 0] * way.first_turn + columns[:, 1] * way.last_turn
-        return np.stack([columns[:, 2] * way.advance * self.advance_scale, by_turn * self.turn_scale], axis=1)
+    def scale_columns(self, steps: FloatArray) -> FloatArray:
+        """Return (n, 3, 2): the errors of steps (n, 3) for one sigma of the two shared scales."""
+        first_turn, advance, last_turn = _split(steps)
+        columns = _step_columns(advance, last_turn)
+        by_turn = columns[..., 0] * first_turn[:, None] + columns[..., 1] * last_turn[:, None]
+        by_advance = columns[..., 2] * advance[:, None]
+        return np.stack([by_advance * self.advance_scale, by_turn * self.turn_scale], axis=2)
 
 
-@dataclass(frozen=True)
-class _Split:
-    """A step as turn, advance, turn; the advance may be backwards."""
-
-    first_turn: float
-    advance: float
-    last_turn: float
-
-
-def _split(step: PlanarPose) -> _Split:
-    distance = math.hypot(step.x, step.y)
-    if distance < 1e-9:
-        return _Split(step.heading, 0.0, 0.0)
-    direction = math.atan2(step.y, step.x)
-    forwards = _Split(direction, distance, wrapped(step.heading - direction))
-    turned = wrapped(direction + math.pi)
-    backwards = _Split(turned, -distance, wrapped(step.heading - turned))
-    return min(forwards, backwards, key=lambda way: abs(way.first_turn) + abs(way.last_turn))
+def _split(steps: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return steps (n, 3) as turn, advance, turn, (n,) each; the advance may be backwards."""
+    distance, heading = np.hypot(steps[:, 0], steps[:, 1]), _wrapped(steps[:, 2])
+    direction = np.arctan2(steps[:, 1], steps[:, 0])
+    forwards = direction, distance, _wrapped(heading - direction)
+    turned = _wrapped(direction + math.pi)
+    backwards = turned, -distance, _wrapped(heading - turned)
+    is_forwards = np.abs(forwards[0]) + np.abs(forwards[2]) <= np.abs(turned) + np.abs(backwards[2])
+    on_the_spot = distance < 1e-9
+    split = (np.where(is_forwards, ahead, back) for ahead, back in zip(forwards, backwards, strict=True))
+    first_turn, advance, last_turn = (np.where(on_the_spot, 0.0, part) for part in split)
+    return np.where(on_the_spot, heading, first_turn), advance, last_turn
 
 
-def _step_columns(way: _Split) -> FloatArray:
-    """Return (3, 5): the end pose's change with first turn, last turn, advance, drift, sideways slip."""
-    c, s = math.cos(way.last_turn), math.sin(way.last_turn)
-    ahead, left = np.array([c, -s, 0.0]), np.array([s, c, 0.0])
-    heading = np.array([0.0, 0.0, 1.0])
-    return np.stack(
-        [way.advance * left + heading, heading, ahead, way.advance / 2.0 * left + heading, left], axis=1
-    )
+def _wrapped(angles: FloatArray) -> FloatArray:
+    return np.asarray(angles - 2.0 * math.pi * np.rint(angles / (2.0 * math.pi)))
+
+
+def _step_columns(advance: FloatArray, last_turn: FloatArray) -> FloatArray:
+    """Return (n, 3, 5): the end poses' change with first turn, last turn, advance, drift, sideways slip."""
+    c, s = np.cos(last_turn), np.sin(last_turn)
+    columns = np.zeros((len(advance), 3, 5))
+    columns[:, 0, 2], columns[:, 1, 2] = c, -s
+    columns[:, 0, 4], columns[:, 1, 4] = s, c
+    columns[:, :2, 0] = advance[:, None] * columns[:, :2, 4]
+    columns[:, :2, 3] = 0.5 * columns[:, :2, 0]
+    columns[:, 2, [0, 1, 3]] = 1.0
+    return columns
 
 
 def pose_errors(poses: Sequence[PlanarPose], noise: OdometryNoise) -> FloatArray:
+    """Return `chain_errors` (n, 3, k) of poses world_from_base along the way."""
+    return chain_errors(np.array([(pose.x, pose.y, pose.heading) for pose in poses]), noise)
+
+
+def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     """Return (n, 3, k): each pose's error (x, y, heading; right perturbation) per independent unit normal.
 
-    The poses are world_from_base along the way; the first is taken as exact. k is 2 for the shared scales
-    and 3 for each step. The joint covariance of all poses is the product of this with its transpose.
+    poses (n, 3), x, y, heading: world_from_base along the way; the first is taken as exact. k is 2 for the
+    shared scales and 3 for each step. The joint covariance of all poses is the product of this with its
+    transpose.
     """
-    count = len(poses)
-    errors = np.zeros((count, 3, 2 + 3 * (count - 1)))
-    for i in range(1, count):
-        step = poses[i - 1].between(poses[i])
-        errors[i] = _carried(step) @ errors[i - 1]
-        errors[i, :, :2] += noise.scale_columns(step)
-        errors[i, :, 3 * i - 1 : 3 * i + 2] += covariance_root(noise.step_covariance(step))
+    steps = _ways(poses[:-1], poses[1:])
+    count = len(steps)
+    onward = _carried(_ways(poses[0], poses[1:]))
+    backward = np.linalg.inv(onward)
+    errors = np.zeros((count + 1, 3, 2 + 3 * count))
+    errors[1:, :, :2] = onward @ np.cumsum(backward @ noise.scale_columns(steps), axis=0)
+    in_start = backward @ covariance_root(noise.step_covariances(steps))
+    by_step = onward[:, None] @ in_start
+    by_step[np.triu_indices(count, 1)] = 0.0  # a step moves no pose before it
+    errors[1:, :, 2:] = np.swapaxes(by_step, 1, 2).reshape(count, 3, 3 * count)
     return errors
 
 
 def covariance_root(covariance: FloatArray) -> FloatArray:
-    """Return a root R (n, n) with R Rᵀ = covariance; singular covariances are welcome."""
+    """Return a root R (..., n, n) with R Rᵀ = covariance; singular covariances are welcome."""
     values, vectors = np.linalg.eigh(covariance)
-    return np.asarray(vectors * np.sqrt(np.clip(values, 0.0, None)))
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
 
 
-def _carried(step: PlanarPose) -> FloatArray:
-    """Return (3, 3): what an error before the step amounts to in the frame after it (adjoint)."""
-    c, s = math.cos(step.heading), math.sin(step.heading)
-    # The heading error swings the end of the step about its start.
-    return np.array([[c, s, s * step.x - c * step.y], [-s, c, c * step.x + s * step.y], [0.0, 0.0, 1.0]])
+def _ways(from_poses: FloatArray, to_poses: FloatArray) -> FloatArray:
+    """Return (n, 3): the poses `to_poses` as seen from `from_poses`; one of them may stand for many."""
+    c, s = np.cos(from_poses[..., 2]), np.sin(from_poses[..., 2])
+    apart = to_poses - from_poses
+    x, y = c * apart[..., 0] + s * apart[..., 1], c * apart[..., 1] - s * apart[..., 0]
+    return np.stack([x, y, apart[..., 2]], axis=-1)
+
+
+def _carried(ways: FloatArray) -> FloatArray:
+    """Return (n, 3, 3): what an error before a way (n, 3) amounts to in the frame after it (adjoint)."""
+    x, y, heading = ways.T
+    c, s = np.cos(heading), np.sin(heading)
+    adjoints = np.zeros((len(ways), 3, 3))
+    adjoints[:, 0, 0], adjoints[:, 0, 1], adjoints[:, 1, 0], adjoints[:, 1, 1] = c, s, -s, c
+    # The heading error swings the end of the way about its start.
+    adjoints[:, 0, 2], adjoints[:, 1, 2], adjoints[:, 2, 2] = s * x - c * y, c * x + s * y, 1.0
+    return adjoints

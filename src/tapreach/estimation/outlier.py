@@ -10,7 +10,7 @@ from tapreach.geometry.gaussian import chi2_limit
 _FALSE_ALARMS = 0.01
 _FEWEST_TO_BLAME = 4  # of three views, any two agree well enough without the third
 _TRIED = 3
-_HOPE = 0.5  # share of the limit that the linear prediction must promise before a view is tried without
+_HOPE = 0.8  # share of the limit that the linear prediction must promise before a view is tried without
 
 
 def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | None:
@@ -33,10 +33,10 @@ def _best_without_one(
     model: ViewModel, solution: Solution, hoped: float
 ) -> tuple[ViewModel, Solution] | None:
     expected = _expected_gains(solution)
-    if float(expected.max()) < hoped:
-        return None
     best: tuple[ViewModel, Solution] | None = None
     for view in np.argsort(expected)[::-1][:_TRIED]:
+        if expected[view] < hoped:
+            break
         reduced = model.without(int(view))
         found = solve(reduced)
         if found is not None and (best is None or found.cost < best[1].cost):
