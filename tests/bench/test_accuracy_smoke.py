@@ -2,13 +2,19 @@
 
 import asyncio
 
+import cv2
 import pytest
 from typer.testing import CliRunner
 
+from tapreach.bench import accuracy_plot
 from tapreach.bench.accuracy import run_accuracy
-from tapreach.bench.accuracy_plan import smoke_plan
+from tapreach.bench.accuracy_cells import run_cell
+from tapreach.bench.accuracy_plan import Part, smoke_plan
+from tapreach.bench.accuracy_taps import normal
+from tapreach.bench.accuracy_trials import Cell
 from tapreach.bench.report import read_report, write_report
 from tapreach.cli.main import app
+from tapreach.errors import ConfigError
 from tapreach.robot.clock import MonotonicClock
 
 SEED = 20261122
@@ -70,3 +76,17 @@ def test_command_offers_seed_trials_and_json():
 @pytest.mark.parametrize("wrong", [["--trials", "0"], ["--seed", "-1"], ["--jobs", "none"]])
 def test_impossible_plan_is_refused(wrong):
     assert CliRunner().invoke(app, ["bench", "accuracy", *wrong]).exit_code == 2
+
+
+def test_plot_without_matplotlib_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setattr(accuracy_plot.importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(ConfigError, match="matplotlib"):
+        accuracy_plot.draw_settings([], tmp_path / "settings.png")
+
+
+def test_plot_is_a_picture(tmp_path):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed: nothing to draw with")
+    cell = Cell(1.0, 2, 1.0, 0.01)
+    result = run_cell((0, cell), seed=SEED, part=Part.CELLS, trials=3, taps=normal)
+    accuracy_plot.draw_settings([result], tmp_path / "new" / "settings.png")
+    assert cv2.imread(str(tmp_path / "new" / "settings.png")).shape[2] == 3

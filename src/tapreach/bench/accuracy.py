@@ -7,6 +7,7 @@ from tapreach.bench.accuracy_cells import CellResult, cells_section, intervals_s
 from tapreach.bench.accuracy_motions import measure_motions
 from tapreach.bench.accuracy_odd_taps import measure_odd_taps
 from tapreach.bench.accuracy_plan import AccuracyPlan
+from tapreach.bench.accuracy_plot import draw_settings, require_matplotlib
 from tapreach.bench.accuracy_slips import measure_slips
 from tapreach.bench.report import Report, Section
 from tapreach.bench.series import Measurement, run_series
@@ -14,11 +15,18 @@ from tapreach.robot.clock import Clock
 
 
 async def run_accuracy(plan: AccuracyPlan, on_section: Callable[[Section], None], clock: Clock) -> Report:
-    """Run the whole bench; the times first, while nothing else of it runs."""
+    """Run the whole bench; the times first, while nothing else of it runs.
+
+    Raises ConfigError at once where a plot is wanted and cannot be drawn.
+    """
+    if plan.plot is not None:
+        require_matplotlib()
     results: list[CellResult] = []
 
     def every_setting() -> Section:
         results.extend(run_cells(plan))
+        if plan.plot is not None:
+            draw_settings(results, plan.plot)
         return cells_section(results, plan.trials)
 
     measurements = (

@@ -1,8 +1,8 @@
 """Random motions, a fifth of them singular: what is said of them, and whether anything breaks."""
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -11,7 +11,7 @@ from tapreach.bench.accuracy_intervals import interval_figures
 from tapreach.bench.accuracy_outcomes import Outcomes, joined, score
 from tapreach.bench.accuracy_plan import AccuracyPlan, Part, generator
 from tapreach.bench.accuracy_trials import Trials
-from tapreach.bench.accuracy_wandering import SINGULAR, draw_motions, wandering
+from tapreach.bench.accuracy_wandering import FARTHEST, NEAREST, SINGULAR, draw_motions, wandering
 from tapreach.bench.figure import Figure, at_least, exactly
 from tapreach.bench.report import Section
 from tapreach.bench.spread import spread
@@ -19,17 +19,19 @@ from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.estimation.point_estimate import PointEstimate, Status
+from tapreach.estimation.range_posterior import RangePrior
 
-TASKS = 30
+TASKS = 60
 """Each has its own number of views, sigma and odometry."""
 FLAGGED = {Status.DEGENERATE, Status.BEHIND, Status.INCONSISTENT}
 
 
 @dataclass
 class MotionResult:
-    """What was said of the motions of one task."""
+    """What was said of the motions of one task; is_told: which ranges the targets were drawn from."""
 
     is_singular: bool
+    is_told: bool
     statuses: Counter[str] = field(default_factory=Counter)
     exceptions: list[str] = field(default_factory=list)
     behind: int = 0
@@ -39,18 +41,20 @@ class MotionResult:
 def measure_motions(plan: AccuracyPlan) -> Section:
     """Run random motions, four of five tasks wandering and one singular."""
     one = partial(_run, seed=plan.seed, trials=max(1, plan.motions // TASKS))
-    results = spread(one, range(TASKS), plan.jobs)
+    results = [result for pair in spread(one, range(TASKS), plan.jobs) for result in pair]
     return Section(
         "Random motions",
         "2 to 6 views, turns to 29°, advances to 50 cm either way, targets anywhere in the picture at 0.2 to "
         "10 m, taps of 1 to 3 px, odometry of 1 to 3 %. Every fifth motion is singular: standing, turning "
         "about the camera's own centre, or driving straight along the line of sight. Flagged: degenerate, "
-        "behind or inconsistent, so that no range is given.",
-        (*_safety_figures(results), *_interval_figures(results)),
+        "behind or inconsistent, so that no range is given. Intervals: of the motions that are "
+        "not singular, once with the estimator's own prior over ranges (0.05 to 100 m), once told the one that "
+        "the targets were drawn from.",
+        (*_safety_figures(results), *_interval_figures(results, False), *_interval_figures(results, True)),
     )
 
 
-def _run(task: int, seed: int, trials: int) -> MotionResult:
+def _run(task: int, seed: int, trials: int) -> list[MotionResult]:
     random = generator(seed, Part.MOTIONS, task)
     kinds = list(SINGULAR.values())
     is_singular = task % 5 == 4
@@ -58,16 +62,22 @@ def _run(task: int, seed: int, trials: int) -> MotionResult:
     views = int(random.integers(2, 7))
     pixel_sigma, odometry = random.uniform(1.0, 3.0), random.uniform(0.01, 0.03)
     drawn = draw_motions(kind, trials, views, pixel_sigma, odometry, random)
-    return _judge(drawn, OdometryNoise.per_step(odometry), is_singular)
+    estimate = partial(estimate_point, motion=OdometryNoise.per_step(odometry), with_advice=False)
+    told = partial(estimate, range_prior=RangePrior(NEAREST, FARTHEST))
+    results = [_judge(drawn, estimate, MotionResult(is_singular, is_told=False))]
+    if not is_singular:
+        results.append(_judge(drawn, told, MotionResult(is_singular, is_told=True)))
+    return results
 
 
-def _judge(drawn: Trials, noise: OdometryNoise, is_singular: bool) -> MotionResult:
-    result = MotionResult(is_singular)
+def _judge(
+    drawn: Trials, ask: Callable[[list[Observation]], PointEstimate], result: MotionResult
+) -> MotionResult:
     estimates: list[PointEstimate] = []
     kept: list[int] = []
     for number, observations in enumerate(drawn.sightings()):
         try:
-            estimate = estimate_point(observations, noise, with_advice=False)
+            estimate = ask(observations)
         except Exception as error:  # whatever it is, it is what this counts
             result.exceptions.append(f"{type(error).__name__}: {error}")
             continue
@@ -92,10 +102,10 @@ def is_behind(estimate: PointEstimate, observations: Sequence[Observation]) -> b
 
 def _safety_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
     singular = sum((r.statuses for r in results if r.is_singular), Counter[str]())
-    others = sum((r.statuses for r in results if not r.is_singular), Counter[str]())
+    others = sum((r.statuses for r in results if not r.is_singular and not r.is_told), Counter[str]())
     flagged = sum(singular[status] for status in FLAGGED)
     exceptions = [text for result in results for text in result.exceptions]
-    total = singular.total() + others.total() + len(exceptions)
+    total = singular.total() + others.total() + sum(len(r.exceptions) for r in results if not r.is_told)
     return (
         Figure("motions", total, "", None, _by_status(others) + " where not singular"),
         Figure(
@@ -115,5 +125,8 @@ def _by_status(statuses: Counter[str]) -> str:
     return ", ".join(f"{count} {str(status).replace('_', ' ')}" for status, count in statuses.most_common())
 
 
-def _interval_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
-    return interval_figures(joined([part for r in results if not r.is_singular for part in r.outcomes]))
+def _interval_figures(results: list[MotionResult], is_told: bool) -> tuple[Figure, ...]:
+    chosen = [r for r in results if not r.is_singular and r.is_told == is_told]
+    figures = interval_figures(joined([part for result in chosen for part in result.outcomes]))
+    prefix = "told the ranges: " if is_told else ""
+    return tuple(replace(figure, name=prefix + figure.name) for figure in figures)

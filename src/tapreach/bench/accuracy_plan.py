@@ -20,7 +20,7 @@ class Part(IntEnum):
 @dataclass(frozen=True)
 class AccuracyPlan:
     """trials: in each setting. motions: random ones, a fifth of them singular. comparisons: trials in each
-    setting of the table beside the peers. jobs: processes. plots: folder for pictures, None for none.
+    setting of the table beside the peers. jobs: processes. plot: file of the picture, None for none.
     """
 
     seed: int
@@ -29,7 +29,7 @@ class AccuracyPlan:
     comparisons: int = 100
     jobs: int = 1
     is_smoke: bool = False
-    plots: Path | None = None
+    plot: Path | None = None
 
 
 def smoke_plan(seed: int) -> AccuracyPlan:

@@ -23,6 +23,7 @@ from tapreach.bench.accuracy_trials import Trials
 from tapreach.geometry.finite import FloatArray
 
 NEAREST, FARTHEST = 0.2, 10.0
+"""Of the targets from the camera [m], even odds over the logarithm."""
 _CENTRED = np.array([0.0, 0.0, LEVER[2]])
 _LARGEST_TURN, _LARGEST_ADVANCE = 0.5, 0.5
 
@@ -47,25 +48,27 @@ def wandering(random: np.random.Generator, trials: int, views: int) -> Steps:
     shape = (trials, views - 1)
     turns = random.uniform(-_LARGEST_TURN, _LARGEST_TURN, shape) * (random.random(shape) < 0.8)
     advances = random.uniform(-0.5, 1.0, shape) * _LARGEST_ADVANCE * (random.random(shape) < 0.8)
-    return Steps(turns, advances, _bearings(random, trials), _depths(random, trials), LEVER)
+    bearings = _bearings(random, trials)
+    depths = _ranges(random, trials) / np.hypot(1.0, np.linalg.norm(bearings, axis=1))
+    return Steps(turns, advances, bearings, depths, LEVER)
 
 
 def standing(random: np.random.Generator, trials: int, views: int) -> Steps:
     """No motion at all: singular."""
     still = np.zeros((trials, views - 1))
-    return Steps(still, still, _bearings(random, trials), _depths(random, trials), LEVER)
+    return Steps(still, still, _bearings(random, trials), _ranges(random, trials), LEVER)
 
 
 def turning_about_the_camera(random: np.random.Generator, trials: int, views: int) -> Steps:
     """Turning on the spot with the camera on the axis: singular."""
     turns = random.uniform(-0.2, 0.2, (trials, views - 1))
     still = np.zeros_like(turns)
-    return Steps(turns, still, _bearings(random, trials), _depths(random, trials), _CENTRED)
+    return Steps(turns, still, _bearings(random, trials), _ranges(random, trials), _CENTRED)
 
 
 def along_the_line_of_sight(random: np.random.Generator, trials: int, views: int) -> Steps:
     """Straight at a target as high as the camera: singular."""
-    depths = _depths(random, trials)
+    depths = _ranges(random, trials)
     shares = random.uniform(0.02, 0.6, (trials, views - 1))
     advances = (
         shares / shares.sum(axis=1, keepdims=True) * (depths * random.uniform(0.05, 0.5, trials))[:, None]
@@ -111,5 +114,5 @@ def _bearings(random: np.random.Generator, trials: int) -> FloatArray:
     return np.asarray((pixels - PRINCIPAL) / FOCAL)
 
 
-def _depths(random: np.random.Generator, trials: int) -> FloatArray:
+def _ranges(random: np.random.Generator, trials: int) -> FloatArray:
     return np.exp(random.uniform(np.log(NEAREST), np.log(FARTHEST), trials))

@@ -14,7 +14,7 @@ Generated from `docs/benchmarks/*.json`, the last full run of each bench; to ren
 
     tapreach bench video --json docs/benchmarks/video.json
     tapreach bench control --json docs/benchmarks/control.json
-    tapreach bench accuracy --json docs/benchmarks/accuracy.json
+    tapreach bench accuracy --plot docs/benchmarks/accuracy.png --json docs/benchmarks/accuracy.json
     tapreach bench document
 
 Milliseconds belong to the machine named with each bench. What carries over to another machine are the
@@ -30,7 +30,7 @@ def benchmarks_document(folder: Path) -> str:
     Raises ConfigError for a file that is no report, or a smoke run: too short to be worth publishing.
     """
     reports = [_full_report(path) for path in sorted(folder.glob("*.json"))]
-    return "\n".join([_HEAD, *(_report_text(report) for report in reports)])
+    return "\n".join([_HEAD, *(_report_text(report, folder) for report in reports)])
 
 
 def _full_report(path: Path) -> Report:
@@ -40,16 +40,12 @@ def _full_report(path: Path) -> Report:
     return report
 
 
-def _report_text(report: Report) -> str:
-    return "\n".join(
-        [
-            f"## {report.title}",
-            "",
-            f"`tapreach bench {report.bench}` on: {report.machine}.{_seed(report)}",
-            "",
-        ]
-        + [_section_text(section) for section in report.sections]
-    )
+def _report_text(report: Report, folder: Path) -> str:
+    picture = f"{report.bench}.png"
+    shown = [f"![{report.title}](benchmarks/{picture})", ""] if (folder / picture).exists() else []
+    head = f"`tapreach bench {report.bench}` on: {report.machine}.{_seed(report)}"
+    sections = [_section_text(section) for section in report.sections]
+    return "\n".join([f"## {report.title}", "", head, "", *shown, *sections])
 
 
 def _seed(report: Report) -> str:

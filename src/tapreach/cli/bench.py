@@ -62,11 +62,14 @@ def accuracy(
     seed: Annotated[
         int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
     ] = None,
+    plot: Annotated[Path | None, typer.Option(help="picture of every setting; needs matplotlib")] = None,
     json: Json = None,
 ) -> None:
     """The estimator in simulation against its bound, its own regions, and other libraries."""
     used = secrets.randbits(32) if seed is None else seed
-    plan = smoke_plan(used) if smoke else AccuracyPlan(used, trials, motions, comparisons, jobs)
+    plan = AccuracyPlan(used, trials, motions, comparisons, jobs, plot=plot)
+    if smoke:
+        plan = smoke_plan(used)
     Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: accuracy_bench.run_accuracy(plan, on_section, MonotonicClock()), json)
 

@@ -1,0 +1,77 @@
+"""A picture of every setting: error over bound, regions and consistency, where matplotlib is installed."""
+
+import importlib
+import importlib.util
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tapreach.bench.accuracy_cells import CellResult
+from tapreach.bench.accuracy_trials import VIEWS
+from tapreach.errors import ConfigError
+
+
+@dataclass(frozen=True)
+class _Panel:
+    """value and standard error of a setting, and the band that is wanted."""
+
+    title: str
+    value: Callable[[CellResult], float]
+    chance: Callable[[CellResult], float]
+    wanted: tuple[float, float]
+
+
+_PANELS = (
+    _Panel(
+        "error of 1/Z over the bound",
+        lambda result: result.error_over_bound,
+        lambda result: result.error_over_bound / math.sqrt(2.0 * max(result.answers, 1)),
+        (1.0, 1.03),
+    ),
+    _Panel(
+        "95 % regions that hold the truth [%]",
+        lambda result: 100.0 * result.outcomes.region_coverage(),
+        lambda result: 100.0 * math.sqrt(0.95 * 0.05 / max(result.answers, 1)),
+        (94.0, 96.0),
+    ),
+    _Panel(
+        "NEES/3",
+        lambda result: result.outcomes.consistency(),
+        lambda result: math.sqrt(2.0 / (3.0 * max(result.answers, 1))),
+        (0.95, 1.05),
+    ),
+)
+
+
+def require_matplotlib() -> None:
+    """Raise ConfigError, saying what to install, where there is nothing to draw with."""
+    if importlib.util.find_spec("matplotlib") is None:
+        raise ConfigError("a plot needs matplotlib, which is not installed; it is in the extra `plot`")
+
+
+def draw_settings(results: Sequence[CellResult], path: Path) -> None:
+    """Write the picture to `path`, its form by the ending; makes the folder. Needs matplotlib."""
+    require_matplotlib()
+    figure = importlib.import_module("matplotlib.figure").Figure((11.0, 3.6), layout="constrained")
+    for axes, panel in zip(figure.subplots(1, len(_PANELS)), _PANELS, strict=True):
+        _draw(axes, panel, results)
+    figure.axes[0].legend(fontsize="small")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=100, metadata={"Software": None} if path.suffix == ".png" else None)
+
+
+def _draw(axes: Any, panel: _Panel, results: Sequence[CellResult]) -> None:
+    axes.axhspan(*panel.wanted, color="tab:green", alpha=0.15, label="wanted")
+    for views in VIEWS:
+        of_views = [result for result in results if result.cell.views == views]
+        axes.errorbar(
+            [result.relative_sd for result in of_views],
+            [panel.value(result) for result in of_views],
+            [panel.chance(result) for result in of_views],
+            fmt="o",
+            markersize=4,
+            label=f"{views} views",
+        )
+    axes.set(title=panel.title, xlabel="sd(1/Z)·Z of the bound", xscale="log")
