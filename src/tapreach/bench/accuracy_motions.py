@@ -48,8 +48,8 @@ def measure_motions(plan: AccuracyPlan) -> Section:
         "10 m, taps of 1 to 3 px, odometry of 1 to 3 %. Every fifth motion is singular: standing, turning "
         "about the camera's own centre, or driving straight along the line of sight. Flagged: degenerate, "
         "behind or inconsistent, so that no range is given. Intervals: of the motions that are "
-        "not singular, once with the estimator's own prior over ranges (0.05 to 100 m), once told the one that "
-        "the targets were drawn from.",
+        "not singular, once with the estimator's own prior over ranges (0.05 to 100 m), once told the one "
+        "that the targets were drawn from.",
         (*_safety_figures(results), *_interval_figures(results, False), *_interval_figures(results, True)),
     )
 
