@@ -34,7 +34,11 @@ def test_step_covariance_agrees_with_simulated_turn_and_advance():
     np.testing.assert_allclose(noise.step_covariance(nominal), np.cov(np.array(ends).T), atol=1.2e-5)
 
 
-@given(st.floats(-0.8, 0.8), st.floats(-1.0, 1.0), st.integers(2, 6))
+# Of shorter ways the rounding of the coordinates decides where they lead.
+LONG_ENOUGH = st.floats(-1.0, 1.0).filter(lambda distance: abs(distance) > 1e-4)
+
+
+@given(st.floats(-0.8, 0.8), LONG_ENOUGH, st.integers(2, 6))
 def test_covariance_does_not_depend_on_how_a_straight_way_is_cut(heading, distance, pieces):
     start = PlanarPose(0.3, -0.2, heading)
     whole = [start, start.after_arc(distance, 0.0)]
