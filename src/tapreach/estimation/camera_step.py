@@ -1,0 +1,88 @@
+"""What the wheels say of how the camera moved between two pictures, and how wrong that may be."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from tapreach.estimation.motion_prior import MountNoise
+from tapreach.estimation.odometry_noise import OdometryNoise, pose_errors
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.geometry.pose import skew
+
+_PLANAR_ROWS = [0, 1, 5]
+_ROCKING = 0.002
+"""Pitch and roll of a chassis on its wheels, one sigma of the difference between two stops [rad]."""
+_SLIPPING = (0.1, 0.1, 0.2)
+"""One sigma of x, y [m] and heading [rad] when the wheels may have slipped."""
+
+
+@dataclass(frozen=True)
+class CameraStep:
+    """The pose of the second camera in the first, by odometry, with its errors.
+
+    by_wheels (6, k), by_mount (6, m): error per independent unit normal, (translation, rotation), right
+    perturbation. turn_axis: (3,) up, in the second camera.
+    """
+
+    first_from_second: RigidTransform
+    by_wheels: FloatArray
+    by_mount: FloatArray
+    turn_axis: FloatArray
+    second_camera_from_base: FloatArray
+    """(6, 6): a small motion of the second base as its camera makes it."""
+
+    @property
+    def by_normal(self) -> FloatArray:
+        """All errors, (6, k + m)."""
+        return np.concatenate([self.by_wheels, self.by_mount], axis=1)
+
+    @property
+    def turn_sd(self) -> float:
+        """One sigma of the turn by the wheels alone [rad]."""
+        return float(np.linalg.norm(self.turn_axis @ self.by_normal[3:]))
+
+    def with_slip(self) -> "CameraStep":
+        """Return the same step for wheels that may have slipped: hardly anything is known of it."""
+        planar = np.zeros((6, 3))
+        planar[_PLANAR_ROWS] = np.diag(_SLIPPING)
+        return replace(self, by_wheels=self.second_camera_from_base @ planar)
+
+    def moved(self, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return rotation (3, 3) and translation (3,) of the step with the errors of `normals`."""
+        error = self.by_normal @ normals
+        rotation = self.first_from_second.rotation.as_matrix()
+        turned = rotation @ Rotation.from_rotvec(error[3:]).as_matrix()
+        return turned, np.asarray(self.first_from_second.translation) + rotation @ error[:3]
+
+
+def camera_step(
+    first_from_second_base: PlanarPose,
+    noise: OdometryNoise,
+    base_from_camera: RigidTransform,
+    mount_noise: MountNoise | None = None,
+) -> CameraStep:
+    """Return what the odometry of a step, and the mount, say of the camera's motion."""
+    step = first_from_second_base.to_rigid()
+    first_from_second = base_from_camera.inv() * step * base_from_camera
+    to_camera = inverse_adjoint(base_from_camera)
+    planar = pose_errors([PlanarPose(), first_from_second_base], noise)[1]
+    of_base = np.zeros((6, planar.shape[1] + 2))
+    of_base[_PLANAR_ROWS, :-2] = planar
+    of_base[3, -2] = of_base[4, -1] = _ROCKING
+    mount = mount_noise if mount_noise is not None else MountNoise()
+    sigmas = np.diag(np.repeat([mount.position_sigma, mount.angle_sigma], 3))
+    # A mount that is off displaces both cameras: what is left is the difference, seen from the second.
+    of_mount = (np.eye(6) - inverse_adjoint(first_from_second)) @ sigmas
+    up = np.asarray(base_from_camera.rotation.inv().apply([0.0, 0.0, 1.0]))
+    return CameraStep(first_from_second, to_camera @ of_base, of_mount, up, to_camera)
+
+
+def inverse_adjoint(outer_from_inner: RigidTransform) -> FloatArray:
+    """Return (6, 6): a small motion of `outer` as `inner`, fixed to it, makes it."""
+    rotation = outer_from_inner.rotation.as_matrix()
+    adjoint = np.zeros((6, 6))
+    adjoint[:3, :3] = adjoint[3:, 3:] = rotation.T
+    adjoint[:3, 3:] = -rotation.T @ skew(np.asarray(outer_from_inner.translation))
+    return adjoint
