@@ -5,12 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tapreach.estimation.bound import position_bound
 from tapreach.estimation.motion_prior import Motion, MountNoise
+from tapreach.estimation.next_view import relative_sds_after
 from tapreach.estimation.observation import Observation
-from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.geometry.finite import FloatArray
-from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarStep
 
 _ADVANCES = (0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.6)
@@ -28,13 +26,14 @@ def advice_to_halve(
 
     Moves are a turn on the spot and an advance with one more view at the end, the target kept in the picture.
     """
+    steps = [PlanarStep(math.radians(turn), advance) for advance in _ADVANCES for turn in _TURNS_DEG]
+    bases = observations[-1].world_from_base.as_matrix() @ np.array([_matrix(step) for step in steps])
+    found = relative_sds_after(observations, motion, mount_noise, point_in_world, bases).tolist()
     best: tuple[float, PlanarStep] | None = None
-    for advance in _ADVANCES:
-        scored = [
-            (sd, PlanarStep(math.radians(turn), advance))
-            for turn in _TURNS_DEG
-            if (sd := _after(observations, motion, mount_noise, point_in_world, turn, advance)) is not None
-        ]
+    for first in range(0, len(steps), len(_TURNS_DEG)):
+        same_advance = slice(first, first + len(_TURNS_DEG))
+        pairs = zip(found[same_advance], steps[same_advance], strict=True)
+        scored = [pair for pair in pairs if math.isfinite(pair[0])]
         for sd, step in scored[:1] + sorted(scored[1:], key=lambda pair: pair[0]):
             if sd <= 0.5 * relative_sd:
                 return f"{_in_words(step)} more to halve the error"
@@ -47,40 +46,11 @@ def advice_to_halve(
     return f"{_in_words(best[1])} more for an error {100.0 * (1.0 - best[0] / relative_sd):.0f} % smaller"
 
 
-def _after(
-    observations: Sequence[Observation],
-    motion: Motion,
-    mount_noise: MountNoise | None,
-    point_in_world: FloatArray,
-    turn_deg: float,
-    advance: float,
-) -> float | None:
-    """Return the relative sd after the move; None where the target would leave the picture."""
-    last = observations[-1]
-    world_from_base = last.world_from_base * PlanarStep(math.radians(turn_deg), advance).to_pose().to_rigid()
-    camera_from_world = (world_from_base * last.base_from_camera).inv()
-    projection = last.camera.project(camera_from_world.apply(point_in_world)[None])
-    if not projection.is_inside[0]:
-        return None
-    u, v = projection.pixels[0]
-    seen = Observation(
-        Pixel(float(u), float(v)), last.pixel_sigma, last.camera, world_from_base, last.base_from_camera
-    )
-    bound = position_bound([*observations, seen], point_in_world, _extended(motion), mount_noise)
-    return None if bound is None else bound.relative_sd
-
-
-def _extended(motion: Motion) -> Motion:
-    """Return the motion's noise with one more pose; poses given with a covariance gain one without error."""
-    if motion is None or isinstance(motion, OdometryNoise):
-        return motion
-    given = np.asarray(motion, dtype=np.float64)
-    if given.ndim == 3:
-        return np.concatenate([given, given[-1:]])
-    larger = np.zeros((len(given) + 6, len(given) + 6))
-    larger[:-6, :-6] = given
-    larger[-6:, -6:] = given[-6:, -6:]
-    return larger
+def _matrix(step: PlanarStep) -> FloatArray:
+    """Return before_from_after (4, 4)."""
+    c, s = math.cos(step.turn), math.sin(step.turn)
+    x, y = step.advance * c, step.advance * s
+    return np.array([[c, -s, 0.0, x], [s, c, 0.0, y], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 
 
 def _in_words(step: PlanarStep) -> str:

@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
 from tapreach.estimation.observation import Observation
-from tapreach.estimation.odometry_noise import OdometryNoise, chain_errors, covariance_root
+from tapreach.estimation.odometry_noise import OdometryNoise, chain_errors, covariance_root, with_next_errors
 from tapreach.geometry.finite import FloatArray, not_negative
 from tapreach.geometry.gaussian import require_covariance
 from tapreach.geometry.pose import skew
@@ -49,35 +49,64 @@ def camera_errors(
     motion: None for exact poses; OdometryNoise for poses along a drive in the order given; or the
     covariance of the base poses, joint (6n, 6n) or of independent poses (n, 6, 6).
     """
-    of_bases = _base_errors(observations, motion)
-    of_cameras = _inverse_adjoints(observations) @ of_bases
+    return camera_errors_with_next(observations, motion, mount_noise, np.zeros((0, 4, 4)))
+
+
+def camera_errors_with_next(
+    observations: Sequence[Observation],
+    motion: Motion,
+    mount_noise: MountNoise | None,
+    world_from_bases: FloatArray,
+) -> CameraErrors:
+    """Return the errors (n + c, 6, k) of the observations' cameras, and of the last one at c next places.
+
+    world_from_bases (c, 4, 4): those places. They share normals: use at most one of them with the others.
+    """
+    mounts = [view.base_from_camera for view in observations]
+    mounts += [mounts[-1]] * len(world_from_bases)
+    of_cameras = _inverse_adjoints(mounts) @ _base_errors(observations, motion, world_from_bases)
     if mount_noise is None:
         return CameraErrors(of_cameras, np.zeros((6, of_cameras.shape[2])))
     sigmas = np.repeat([mount_noise.position_sigma, mount_noise.angle_sigma], 3)
     of_mount = np.diag(sigmas)[:, sigmas > 0.0]
-    spread = np.broadcast_to(of_mount, (len(observations), *of_mount.shape))
+    spread = np.broadcast_to(of_mount, (len(mounts), *of_mount.shape))
     by_mount = np.concatenate([np.zeros((6, of_cameras.shape[2])), of_mount], axis=1)
     return CameraErrors(np.concatenate([of_cameras, spread], axis=2), by_mount)
 
 
-def _base_errors(observations: Sequence[Observation], motion: Motion) -> FloatArray:
-    count = len(observations)
+def _base_errors(
+    observations: Sequence[Observation], motion: Motion, world_from_bases: FloatArray
+) -> FloatArray:
+    count, more = len(observations), len(world_from_bases)
     if motion is None:
-        return np.zeros((count, 6, 0))
+        return np.zeros((count + more, 6, 0))
     if isinstance(motion, OdometryNoise):
-        return _odometry_errors(observations, motion)
-    return _covariance_errors(np.asarray(motion, dtype=np.float64), count)
+        return _odometry_errors(observations, motion, world_from_bases)
+    covariance = np.asarray(motion, dtype=np.float64)
+    known = _covariance_errors(covariance, count)
+    if more == 0:
+        return known
+    last = np.asarray(covariance[-1] if covariance.ndim == 3 else covariance[-6:, -6:])
+    errors = np.zeros((count + more, 6, known.shape[2] + 6))
+    errors[:count, :, :-6] = known
+    errors[count:, :, -6:] = covariance_root(last)
+    return errors
 
 
-def _odometry_errors(observations: Sequence[Observation], noise: OdometryNoise) -> FloatArray:
-    matrices = np.array([view.world_from_base.as_matrix() for view in observations])
+def _odometry_errors(
+    observations: Sequence[Observation], noise: OdometryNoise, world_from_bases: FloatArray
+) -> FloatArray:
+    given = np.array([view.world_from_base.as_matrix() for view in observations])
+    matrices = np.concatenate([given, world_from_bases])
     start, offsets = matrices[0, :3, :3], matrices[:, :3, 3] - matrices[0, :3, 3]
     ahead = matrices[:, :3, 0] @ start
-    places = offsets @ start
     headings = np.arctan2(ahead[:, 1], ahead[:, 0])
-    planar = chain_errors(np.column_stack([places[:, :2], headings]), noise)
+    poses = np.column_stack([(offsets @ start)[:, :2], headings])
+    planar = chain_errors(poses[: len(given)], noise)
+    if len(world_from_bases):
+        planar = with_next_errors(planar, poses[len(given) - 1], poses[len(given) :], noise)
     used = np.any(planar != 0.0, axis=(0, 1))
-    errors = np.zeros((len(observations), 6, int(used.sum())))
+    errors = np.zeros((len(matrices), 6, int(used.sum())))
     errors[:, _PLANAR_ROWS] = planar[:, :, used]
     return errors
 
@@ -97,11 +126,10 @@ def _covariance_errors(covariance: FloatArray, count: int) -> FloatArray:
     return root[:, np.any(root != 0.0, axis=0)].reshape(count, 6, -1)
 
 
-def _inverse_adjoints(observations: Sequence[Observation]) -> FloatArray:
-    """Return (n, 6, 6): `_inverse_adjoint` of every view's mount; mostly there is but one."""
-    mounts = {id(view.base_from_camera): view.base_from_camera for view in observations}
-    adjoints = {key: _inverse_adjoint(mount) for key, mount in mounts.items()}
-    return np.array([adjoints[id(view.base_from_camera)] for view in observations])
+def _inverse_adjoints(mounts: Sequence[RigidTransform]) -> FloatArray:
+    """Return (n, 6, 6): `_inverse_adjoint` of every mount; mostly there is but one."""
+    adjoints = {key: _inverse_adjoint(mount) for key, mount in {id(each): each for each in mounts}.items()}
+    return np.array([adjoints[id(mount)] for mount in mounts])
 
 
 def _inverse_adjoint(base_from_camera: RigidTransform) -> FloatArray:

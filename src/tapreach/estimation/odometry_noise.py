@@ -121,6 +121,22 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     return errors
 
 
+def with_next_errors(
+    known: FloatArray, last: FloatArray, coming: FloatArray, noise: OdometryNoise
+) -> FloatArray:
+    """Return `chain_errors` (n, 3, k) with c poses more, each reached by one step from the last (3,) of them.
+
+    known: (n, 3, k) of the chain. coming: (c, 3). The steps share three more normals: (n + c, 3, k + 3).
+    """
+    steps = _ways(last, coming)
+    errors = np.zeros((len(known) + len(coming), 3, known.shape[2] + 3))
+    errors[: len(known), :, :-3] = known
+    errors[len(known) :, :, :-3] = _carried(steps) @ known[-1]
+    errors[len(known) :, :, :2] += noise.scale_columns(steps)
+    errors[len(known) :, :, -3:] = covariance_root(noise.step_covariances(steps))
+    return errors
+
+
 def covariance_root(covariance: FloatArray) -> FloatArray:
     """Return a root R (..., n, n) with R Rᵀ = covariance; singular covariances are welcome."""
     values, vectors = np.linalg.eigh(covariance)

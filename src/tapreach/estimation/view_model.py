@@ -141,6 +141,14 @@ def homogeneous_points(x: FloatArray) -> FloatArray:
 
 def view_model(observations: Sequence[Observation], errors: CameraErrors) -> ViewModel:
     """Return the stacked model of the observations, the first one as reference."""
+    measured, weights, sigmas = sighted(observations)
+    used = np.ones(len(observations), dtype=bool)
+    ways = camera_ways(observations, np.zeros((0, 4, 4)))
+    return ViewModel(ways, measured, weights, sigmas, errors, used)
+
+
+def sighted(observations: Sequence[Observation]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what was measured (n, 2), its weights (n, 2, 2) and sigmas (n,) as ViewModel keeps them."""
     sigmas = np.array([view.pixel_sigma for view in observations])
     pixels = np.array([(view.pixel.u, view.pixel.v) for view in observations])
     measured = np.empty((len(observations), 2))
@@ -150,15 +158,17 @@ def view_model(observations: Sequence[Observation], errors: CameraErrors) -> Vie
         rows = [i for i, each in enumerate(cameras) if each is camera or each == camera]
         measured[rows] = camera.normalise(pixels[rows])
         weights[rows] = pixel_weights(camera, measured[rows]) / sigmas[rows, None, None]
-    used = np.ones(len(observations), dtype=bool)
-    return ViewModel(nominal_cameras(observations), measured, weights, sigmas, errors, used)
+    return measured, weights, sigmas
 
 
-def nominal_cameras(observations: Sequence[Observation]) -> FloatArray:
-    """Return (n, 3, 4): the way from points of the first camera to points of each, as given."""
+def camera_ways(observations: Sequence[Observation], further: FloatArray) -> FloatArray:
+    """Return (n + c, 3, 4): the way from points of the first camera to points of each, as given.
+
+    further (c, 4, 4): world_from_camera of further cameras.
+    """
     bases = np.array([view.world_from_base.as_matrix() for view in observations])
     mounts = np.array([view.base_from_camera.as_matrix() for view in observations])
-    world_from_camera = bases @ mounts
+    world_from_camera = np.concatenate([bases @ mounts, further])
     rotations = np.swapaxes(world_from_camera[:, :3, :3], 1, 2)
     offsets = world_from_camera[0, :3, 3] - world_from_camera[:, :3, 3]
     first = rotations @ world_from_camera[0, :3, :3]
