@@ -34,11 +34,11 @@ def descended(
         now = after if is_better.all() else now.updated(after, is_better)
         damping = np.where(is_better, _lowered(damping), np.maximum(10.0 * damping, _FIRST_DAMPING))
         before = promised
+        if rests.all():
+            return reached.replaced(moving, now)
         if rests.any():
             reached = reached.replaced(moving[rests], now.take(rests))
             moving, now, damping, before = moving[~rests], now.take(~rests), damping[~rests], before[~rests]
-            if len(moving) == 0:
-                return reached
     return reached.replaced(moving, now)
 
 

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.camera_matrices import CameraMatrices
 from tapreach.estimation.map_solver import Solution
@@ -32,8 +31,8 @@ class _Place:
     by_target: FloatArray
     by_normals: FloatArray
 
-    def moved(self, a_from_b: RigidTransform) -> "_Place":
-        matrix = a_from_b.as_matrix()
+    def moved(self, matrix: FloatArray) -> "_Place":
+        """Return it in another frame; matrix (4, 4): of the rigid transform there."""
         rotation = matrix[:3, :3]
         point = rotation @ self.point + matrix[:3, 3]
         return _Place(point, rotation @ self.by_target, rotation @ self.by_normals)
@@ -55,9 +54,10 @@ def points_in_world_and_base(
     target_covariance (3, 3): of (a, b, rho).
     """
     cameras = model.cameras(solution.x[None])
-    world = _in_first(cameras, solution.x).moved(first.world_from_camera)
+    world_from_camera = first.world_from_base.as_matrix() @ first.base_from_camera.as_matrix()
+    world = _in_first(cameras, solution.x).moved(world_from_camera)
     seen = _in_last(cameras, solution.x)
-    base = seen.misplaced(model.errors, solution.x[3:]).moved(last.base_from_camera)
+    base = seen.misplaced(model.errors, solution.x[3:]).moved(last.base_from_camera.as_matrix())
     by_target = np.concatenate([world.by_target, base.by_target])
     by_normals = np.concatenate([world.by_normals, base.by_normals])
     joint = _propagated(solution, target_covariance, by_target, by_normals)

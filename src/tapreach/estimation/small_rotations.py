@@ -28,7 +28,8 @@ def backward_rotations(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return exp(-turn) and the right Jacobian of exp at turn, (..., 3, 3) each, for turns (..., 3) [rad]."""
     cross = cross_matrices(turns)
     squared = np.asarray(cross @ cross)
-    sine, cosine, third = np.moveaxis(_coefficients(np.sum(turns * turns, axis=-1)), -1, 0)[..., None, None]
+    factors = _coefficients(np.add.reduce(turns * turns, axis=-1))[..., None, None]
+    sine, cosine, third = factors[..., 0, :, :], factors[..., 1, :, :], factors[..., 2, :, :]
     back = _IDENTITY - sine * cross + cosine * squared
     return back, _IDENTITY - cosine * cross + third * squared
 
