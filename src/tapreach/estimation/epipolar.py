@@ -49,7 +49,7 @@ def point_pairs(first_px: FloatArray, second_px: FloatArray, camera: Camera) -> 
 
 
 def sampson_distances(pairs: PointPairs, rotation: FloatArray, translation: FloatArray) -> FloatArray:
-    """Return how far pairs are from their epipolar lines (n, 1) [px].
+    """Return how far pairs are from their epipolar lines (n, 1) [px] (docs/estimation.md, 11).
 
     The length of the translation does not matter, only its direction; it must not be zero.
     """
