@@ -91,7 +91,7 @@ def _dehomogenised(matrix: FloatArray, by_normals: FloatArray, homogeneous: Floa
 def _propagated(
     solution: Solution, target_covariance: FloatArray, by_target: FloatArray, by_normals: FloatArray
 ) -> FloatArray:
-    """Return the covariance of what depends on target and pose errors by (r, 3) and (r, k): equation (8)."""
+    """Return the covariance of what depends on target and pose errors by (r, 3) and (r, k): equation (7b)."""
     views = solution.views
     seen = views.by_errors[0] @ by_normals.T
     solved = views.solved(np.concatenate([views.by_target[0], seen], axis=1)[None])[0]
