@@ -67,7 +67,7 @@ def measure_beside(plan: AccuracyPlan, clock: Clock) -> Section:
     return Section(
         "Beside others",
         "Error over bound / share of 95 % regions that hold the truth (— where none is given) / median time "
-        f"of a call, in one process, {plan.comparisons} trials each at 1 px and 1 %. OpenCV "
+        f"of a call, in turns in one process, {plan.comparisons} trials each at 1 px and 1 %. OpenCV "
         "(triangulatePoints) and the paper's formula use the first and the last view, gtsam's triangulation "
         "(refined) all, with poses as the odometry says. gtsam MAP: its own factor graph of the same "
         "problem with the marginal covariance of the point. Making each one's own types is not "
@@ -83,11 +83,12 @@ def _compare(
     drawn = draw_trials(cell, plan.comparisons, generator(plan.seed, Part.PEERS, number))
     bound = bound_of(cell, next(drawn.sightings()), drawn)
     tallies = {name: Tally([], [], []) for name in peers}
-    for name, peer in peers.items():
+    for peer in peers.values():
         _timed(
             peer(next(drawn.sightings()), cell), clock
         )  # the first call of all pays for caches and imports
-        for observations, truth in zip(drawn.sightings(), drawn.targets, strict=True):
+    for observations, truth in zip(drawn.sightings(), drawn.targets, strict=True):
+        for name, peer in peers.items():  # in turns: whatever else the machine does meets all alike
             answer, time_ms = _timed(peer(observations, cell), clock)
             _count(tallies[name], answer, time_ms, truth, bound)
     return tallies

@@ -54,10 +54,11 @@ def require_matplotlib() -> None:
 def draw_settings(results: Sequence[CellResult], path: Path) -> None:
     """Write the picture to `path`, its form by the ending; makes the folder. Needs matplotlib."""
     require_matplotlib()
-    figure = importlib.import_module("matplotlib.figure").Figure((11.0, 3.6), layout="constrained")
+    figure = importlib.import_module("matplotlib.figure").Figure((11.0, 4.0), layout="constrained")
     for axes, panel in zip(figure.subplots(1, len(_PANELS)), _PANELS, strict=True):
         _draw(axes, panel, results)
-    figure.axes[0].legend(fontsize="small")
+    marks = figure.axes[0].get_legend_handles_labels()
+    figure.legend(*marks, loc="outside lower center", ncols=len(VIEWS) + 1)
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=100, metadata={"Software": None} if path.suffix == ".png" else None)
 
