@@ -18,11 +18,12 @@ from tapreach.estimation.motion_prior import MountNoise
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.estimation.point_estimate import Status
+from tapreach.estimation.range_posterior import RangePrior
 from tapreach.estimation.two_tap import two_tap_from_pixels
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.pixel import ImageSize, Pixel
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
-from tapreach.geometry.pose import pose_exp
+from tapreach.geometry.pose import camera_mount, pose_exp
 
 FEWER = hypothesis_settings(max_examples=25, deadline=None)
 ONE_PERCENT = OdometryNoise.per_step(0.01)
@@ -203,6 +204,25 @@ def test_advice_is_a_move_that_does_what_it_says():
     after = position_bound([*sightings, *seen], estimate.point_in_world, ONE_PERCENT)
     assert after is not None
     assert after.relative_sd <= 0.5 * estimate.relative_sd * 1.001
+
+
+def test_target_close_to_a_camera_plane_at_some_depth_is_no_error():
+    # At one of the ranges tried the target falls almost into the plane of two cameras of one pose.
+    turned = PlanarPose(0.41798799646066115, -0.1852684589054784, -0.417217025869433)
+    pixels = [
+        (581.0327081432981, 469.49825434820536),
+        (326.4973339778045, 477.51927391145597),
+        (329.0608228617271, 474.6687922344659),
+    ]
+    mount = camera_mount((0.10, 0.0, 0.15), math.radians(10.0))
+    sightings = [
+        Observation(Pixel(*pixel), 2.0271912254667184, CAMERA, pose.to_rigid(), mount)
+        for pixel, pose in zip(pixels, [PlanarPose(), turned, turned], strict=True)
+    ]
+    noise = OdometryNoise.per_step(0.012357132276905113)
+    for farthest in (10.0, 20.0):
+        estimate = estimate_point(sightings, noise, range_prior=RangePrior(0.2, farthest))
+        assert estimate.status in set(Status)
 
 
 def test_no_observation_at_all_is_refused():

@@ -25,6 +25,9 @@ from tapreach.geometry.lens import distortion_jacobian
 
 _TARGET_COLUMNS = [0, 1, 3]  # of a projection matrix: those of a, b and rho
 _IN_FRONT = 1e-9  # least third homogeneous coordinate of a target before a camera
+_SEEN = (
+    0.01  # ... and least share of its distance from the axis: nearer to the camera's plane no lens sees it
+)
 
 
 @dataclass(frozen=True)
@@ -86,8 +89,9 @@ class ViewModel:
         homogeneous = homogeneous_points(x)
         points = (cameras.matrices @ homogeneous[:, None, :, None])[..., 0]
         depths = points[..., 2]
-        is_in_front = np.all((depths > _IN_FRONT) | ~self.is_used, axis=1)
-        safe = np.where((depths > _IN_FRONT) & self.is_used, depths, 1.0)[..., None]
+        is_before = _is_before(points)
+        is_in_front = np.all(is_before | ~self.is_used, axis=1)
+        safe = np.where(is_before & self.is_used, depths, 1.0)[..., None]
         projected = points[..., :2] / safe
         weights = self._used_weights / safe[..., None]
         slopes = np.concatenate([weights, -weights @ projected[..., None]], axis=-1)
@@ -106,10 +110,10 @@ class ViewModel:
     def costs_without_pose_errors(self, starts: FloatArray) -> FloatArray:
         """Return the squared residuals over sigma (m,) of (a, b, rho) (m, 3); infinite behind a view used."""
         homogeneous = homogeneous_points(starts)
-        points = self.nominal @ homogeneous[:, None, :, None]
-        depths = points[..., 2, 0]
-        is_in_front = np.all((depths > _IN_FRONT) | ~self.is_used, axis=1)
-        projected = points[..., :2, 0] / np.where(depths > _IN_FRONT, depths, 1.0)[..., None]
+        points = (self.nominal @ homogeneous[:, None, :, None])[..., 0]
+        is_before = _is_before(points)
+        is_in_front = np.all(is_before | ~self.is_used, axis=1)
+        projected = points[..., :2] / np.where(is_before, points[..., 2], 1.0)[..., None]
         residuals = self._used_weights @ (projected - self.measured)[..., None]
         return np.where(is_in_front, np.sum(residuals * residuals, axis=(1, 2, 3)), np.inf)
 
@@ -130,6 +134,12 @@ class ViewModel:
     @cached_property
     def _used_weights(self) -> FloatArray:
         return self.weights * self.is_used[:, None, None]
+
+
+def _is_before(points: FloatArray) -> npt.NDArray[np.bool_]:
+    """Tell which homogeneous points (..., 3) a camera can see before it; at its plane slopes overflow."""
+    off_axis = np.abs(points[..., :2]).max(axis=-1)
+    return np.asarray(points[..., 2] > np.maximum(_IN_FRONT, _SEEN * off_axis))
 
 
 def homogeneous_points(x: FloatArray) -> FloatArray:
