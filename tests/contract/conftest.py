@@ -1,6 +1,7 @@
 """Every driver, ready for the same tests. A new driver adds one line to RIGS."""
 
 import asyncio
+import os
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -116,6 +117,8 @@ def play(make_rig: Callable[[], Rig]) -> Callable[[Scenario], None]:
         try:
             await rig.robot.connect()
         except SetupError as error:
+            if os.environ.get("CI"):
+                raise  # the gate installs what draws: without it the simulator would go untested
             pytest.skip(f"nothing can draw here: {error}")
         try:
             await rig.until(lambda: rig.heard.odometry and rig.heard.arm)

@@ -64,7 +64,6 @@ class FakePicture:
     def __init__(self, section: CameraSection, boxes: tuple[Box, ...] = BOXES) -> None:
         self._camera: Camera = section.model()
         self._camera_from_base = section.mount.base_from_camera().inv()
-        self._boxes = boxes
         self._grid_in_world = floor_grid()
         self._faces_in_world = np.concatenate([box.faces_in_world() for box in boxes])
         self._colours = [box.colour for box in boxes for _ in range(5)]
