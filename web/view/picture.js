@@ -24,6 +24,7 @@ export class Picture extends EventTarget {
     /** @type {Frame | null} the newest that waits for the decoder */
     this.awaiting = null;
     this.isDecoding = false;
+    this.isDecodingUnwanted = false;
     /** @type {{frame: Frame, bitmap: ImageBitmap} | null} decoded, not painted yet */
     this.decoded = null;
     /** @type {{frame: Frame, bitmap: ImageBitmap} | null} */
@@ -38,22 +39,42 @@ export class Picture extends EventTarget {
     void this.decodeNewest();
   }
 
+  /** What is on the canvas stays there: nothing that is on its way gets painted any more. */
+  keepPainted() {
+    this.awaiting = null;
+    this.isDecodingUnwanted = this.isDecoding;
+    this.decoded?.bitmap.close();
+    this.decoded = null;
+  }
+
   async decodeNewest() {
     if (this.isDecoding || !this.awaiting) return;
     const frame = this.awaiting;
     this.awaiting = null;
     this.isDecoding = true;
     try {
-      const bitmap = await createImageBitmap(frame.jpeg);
-      this.decoded?.bitmap.close();
-      this.decoded = { frame, bitmap };
-      this.repaint();
+      this.present(frame, await createImageBitmap(frame.jpeg));
     } catch {
       this.dispatchEvent(new CustomEvent("undecodable", { detail: frame }));
     } finally {
       this.isDecoding = false;
+      this.isDecodingUnwanted = false;
       void this.decodeNewest();
     }
+  }
+
+  /**
+   * @param {Frame} frame
+   * @param {ImageBitmap} bitmap
+   */
+  present(frame, bitmap) {
+    if (this.isDecodingUnwanted) {
+      bitmap.close();
+      return;
+    }
+    this.decoded?.bitmap.close();
+    this.decoded = { frame, bitmap };
+    this.repaint();
   }
 
   /** Ask for a new painting, because of a new frame or because the overlay has changed. */

@@ -63,7 +63,7 @@ export class Playback extends EventTarget {
     if (this.still || !painted) return;
     this.still = this.ring.snapshot().filter((frame) => frame.capturedMs <= painted.capturedMs);
     this.backMs = 0;
-    this.picture.show(painted);
+    this.picture.keepPainted();
     this.settle(this.owed.at(-1) ?? 0);
     this.announce();
   }
