@@ -1,6 +1,7 @@
 """The bounds after many possible next views against the bound of each, worked out alone."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,3 +55,27 @@ def test_target_behind_a_camera_or_on_the_line_of_sight_has_no_finite_bound():
     assert math.isinf(relative_sds_after(sightings, None, None, np.array([1.0, 0.0, 0.15]), bases)[0])
     ahead = observed(poses, TARGET, MOUNT)
     assert math.isinf(relative_sds_after(ahead, None, None, np.array([-1.0, 0.0, 0.1]), bases)[0])
+
+
+@pytest.mark.parametrize("motion", [None, OdometryNoise(), np.stack([np.eye(6) * 1e-5] * 2)])
+def test_views_along_a_way_count_together(motion):
+    poses = poses_along([PlanarStep(0.1, 0.1)])
+    known = observed(poses, TARGET)
+    mount_noise = MountNoise(0.005, math.radians(1.0))
+    ways = [
+        [
+            poses[-1].after(PlanarStep(turn, 0.0)),
+            *(poses[-1].after(PlanarStep(turn, way)) for way in (0.1, 0.2)),
+        ]
+        for turn in (0.05, -0.2)
+    ]
+    bases = np.array([[pose.to_rigid().as_matrix() for pose in way] for way in ways])
+    found = relative_sds_after(known, motion, mount_noise, TARGET, bases, (0.7, 1.5, 0.7))
+    for way, sd in zip(ways, found, strict=True):
+        views = [
+            replace(observed([pose], TARGET)[0], pixel_sigma=sigma)
+            for pose, sigma in zip(way, (0.7, 1.5, 0.7), strict=True)
+        ]
+        whole = np.stack([np.eye(6) * 1e-5] * 5) if isinstance(motion, np.ndarray) else motion
+        alone = position_bound([*known, *views], TARGET, whole, mount_noise)
+        assert sd == pytest.approx(alone.relative_sd, rel=1e-9)

@@ -49,7 +49,7 @@ def camera_errors(
     motion: None for exact poses; OdometryNoise for poses along a drive in the order given; or the
     covariance of the base poses, joint (6n, 6n) or of independent poses (n, 6, 6).
     """
-    return camera_errors_with_next(observations, motion, mount_noise, np.zeros((0, 4, 4)))
+    return camera_errors_with_next(observations, motion, mount_noise, np.zeros((0, 1, 4, 4)))
 
 
 def camera_errors_with_next(
@@ -58,12 +58,13 @@ def camera_errors_with_next(
     mount_noise: MountNoise | None,
     world_from_bases: FloatArray,
 ) -> CameraErrors:
-    """Return the errors (n + c, 6, k) of the observations' cameras, and of the last one at c next places.
+    """Return the errors (n + c v, 6, k) of the observations' cameras, and of the last one on c next ways.
 
-    world_from_bases (c, 4, 4): those places. They share normals: use at most one of them with the others.
+    world_from_bases (c, v, 4, 4): v places along each way. The ways share normals: use at most one of them
+    with the others.
     """
     mounts = [view.base_from_camera for view in observations]
-    mounts += [mounts[-1]] * len(world_from_bases)
+    mounts += [mounts[-1]] * (world_from_bases.shape[0] * world_from_bases.shape[1])
     of_cameras = _inverse_adjoints(mounts) @ _base_errors(observations, motion, world_from_bases)
     if mount_noise is None:
         return CameraErrors(of_cameras, np.zeros((6, of_cameras.shape[2])))
@@ -77,19 +78,20 @@ def camera_errors_with_next(
 def _base_errors(
     observations: Sequence[Observation], motion: Motion, world_from_bases: FloatArray
 ) -> FloatArray:
-    count, more = len(observations), len(world_from_bases)
+    count, (ways, length) = len(observations), world_from_bases.shape[:2]
     if motion is None:
-        return np.zeros((count + more, 6, 0))
+        return np.zeros((count + ways * length, 6, 0))
     if isinstance(motion, OdometryNoise):
         return _odometry_errors(observations, motion, world_from_bases)
     covariance = np.asarray(motion, dtype=np.float64)
     known = _covariance_errors(covariance, count)
-    if more == 0:
+    if ways == 0:
         return known
     last = np.asarray(covariance[-1] if covariance.ndim == 3 else covariance[-6:, -6:])
-    errors = np.zeros((count + more, 6, known.shape[2] + 6))
-    errors[:count, :, :-6] = known
-    errors[count:, :, -6:] = covariance_root(last)
+    errors = np.zeros((count + ways * length, 6, known.shape[2] + 6 * length))
+    errors[:count, :, : known.shape[2]] = known
+    each = np.kron(np.eye(length), covariance_root(last)).reshape(length, 6, 6 * length)
+    errors[count:, :, known.shape[2] :] = np.tile(each, (ways, 1, 1))
     return errors
 
 
@@ -97,14 +99,15 @@ def _odometry_errors(
     observations: Sequence[Observation], noise: OdometryNoise, world_from_bases: FloatArray
 ) -> FloatArray:
     given = np.array([view.world_from_base.as_matrix() for view in observations])
-    matrices = np.concatenate([given, world_from_bases])
+    matrices = np.concatenate([given, world_from_bases.reshape(-1, 4, 4)])
     start, offsets = matrices[0, :3, :3], matrices[:, :3, 3] - matrices[0, :3, 3]
     ahead = matrices[:, :3, 0] @ start
     headings = np.arctan2(ahead[:, 1], ahead[:, 0])
     poses = np.column_stack([(offsets @ start)[:, :2], headings])
     planar = chain_errors(poses[: len(given)], noise)
     if len(world_from_bases):
-        planar = with_next_errors(planar, poses[len(given) - 1], poses[len(given) :], noise)
+        coming = poses[len(given) :].reshape(*world_from_bases.shape[:2], 3)
+        planar = with_next_errors(planar, poses[len(given) - 1], coming, noise)
     used = np.any(planar != 0.0, axis=(0, 1))
     errors = np.zeros((len(matrices), 6, int(used.sum())))
     errors[:, _PLANAR_ROWS] = planar[:, :, used]

@@ -124,16 +124,22 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
 def with_next_errors(
     known: FloatArray, last: FloatArray, coming: FloatArray, noise: OdometryNoise
 ) -> FloatArray:
-    """Return `chain_errors` (n, 3, k) with c poses more, each reached by one step from the last (3,) of them.
+    """Return `chain_errors` (n, 3, k) with c ways more of v poses each, all from the last (3,) of them on.
 
-    known: (n, 3, k) of the chain. coming: (c, 3). The steps share three more normals: (n + c, 3, k + 3).
+    known: (n, 3, k) of the chain. coming: (c, v, 3). The ways share 3 v more normals: (n + c v, 3, k + 3 v).
     """
-    steps = _ways(last, coming)
-    errors = np.zeros((len(known) + len(coming), 3, known.shape[2] + 3))
-    errors[: len(known), :, :-3] = known
-    errors[len(known) :, :, :-3] = _carried(steps) @ known[-1]
-    errors[len(known) :, :, :2] += noise.scale_columns(steps)
-    errors[len(known) :, :, -3:] = covariance_root(noise.step_covariances(steps))
+    count, length = coming.shape[:2]
+    n, _, k = known.shape
+    errors = np.zeros((n + count * length, 3, k + 3 * length))
+    errors[:n, :, :k] = known
+    on_ways = errors[n:].reshape(count, length, 3, -1)
+    before = np.broadcast_to(last, (count, 3)), np.broadcast_to(errors[n - 1], (count, *errors.shape[1:]))
+    for i in range(length):
+        steps, own = _ways(before[0], coming[:, i]), slice(k + 3 * i, k + 3 * i + 3)
+        on_ways[:, i] = _carried(steps) @ before[1]
+        on_ways[:, i, :, :2] += noise.scale_columns(steps)
+        on_ways[:, i, :, own] = covariance_root(noise.step_covariances(steps))
+        before = coming[:, i], on_ways[:, i]
     return errors
 
 
