@@ -49,4 +49,4 @@ prepare
 check_code
 [ -z "${TAPREACH_LINT_ONLY:-}" ] || exit 0
 step "pytest"
-exec .venv/bin/python -m pytest --durations=15 "$@"
+exec .venv/bin/python -m pytest --durations=15 -rR "$@"
