@@ -1,6 +1,7 @@
 """The control loop with the fake robot and a clock turned by hand: every timeout, every way to be stopped."""
 
 import asyncio
+import math
 from collections.abc import Awaitable, Callable
 from math import radians
 
@@ -14,6 +15,7 @@ from tapreach.control.loop import PERIOD_NS, ControlLoop
 from tapreach.control.loop_pilot import LoopPilot
 from tapreach.control.pilot import MotionInterrupted
 from tapreach.drivers.fake import FakeRobot
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.clock import MS, SECOND, ManualClock
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.messages import ArmPose, Twist
@@ -217,6 +219,49 @@ def test_task_turns_and_advances(description):
         assert driven.world_from_base.x == pytest.approx(0.2 * 0.866, abs=0.005)
         assert rig.speed == 0.0
         assert rig.refusals == []
+
+    play(description, scenario)
+
+
+def test_one_move_turns_and_drives_to_about_there_with_the_arm_meanwhile_and_sooner(description):
+    async def scenario(rig):
+        began_ns = rig.clock.now_ns()
+        target = ArmPose(0.5, 0.1, 0.2, 0.02)
+        driven = await rig.finished(rig.pilot.move(PlanarStep(radians(30.0), 0.2), target))
+        together_ns = rig.clock.now_ns() - began_ns
+        way = PlanarPose().between(driven.world_from_base)
+        assert way.heading == pytest.approx(radians(30.0), abs=radians(3.0))
+        assert math.hypot(way.x, way.y) == pytest.approx(0.2, abs=0.02)
+        assert rig.speed == 0.0
+        assert rig.robot.arm.state.pose == target
+        began_ns = rig.clock.now_ns()
+        await rig.finished(rig.pilot.turn(radians(30.0)))
+        await rig.finished(rig.pilot.advance(0.2))
+        assert together_ns < 0.75 * (rig.clock.now_ns() - began_ns)
+
+    play(description, scenario)
+
+
+def test_move_too_short_to_start_the_wheels_for_ends_where_it_is(description):
+    async def scenario(rig):
+        reading = await rig.finished(rig.pilot.move(PlanarStep(radians(0.5), -0.004)))
+        assert reading.world_from_base == PlanarPose()
+
+    play(description, scenario)
+
+
+def test_cancelled_move_stops_wheels_and_arm_at_once(description):
+    async def scenario(rig):
+        rig.deadman.heard()
+        rig.loop.admit_task(ANNA)
+        target = ArmPose(0.5, 0.1, 0.2, 0.02)
+        motion = asyncio.ensure_future(rig.pilot.move(PlanarStep(0.0, 0.5), target))
+        await rig.operate(200 * MS)
+        assert rig.loop.sent.twist.linear > 0.05
+        motion.cancel()
+        await asyncio.gather(motion, return_exceptions=True)
+        assert rig.loop.sent.twist.is_zero
+        assert rig.loop.arm_target != target
 
     play(description, scenario)
 

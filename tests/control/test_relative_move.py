@@ -99,6 +99,32 @@ def test_advance_speeds_up_gently_and_stays_below_its_speed(distance, lag):
     assert max(rises) <= profile.acceleration * PERIOD + 1e-12
 
 
+@settings(deadline=None, max_examples=60)
+@given(distance=st.floats(0.05, 1.0), back=st.booleans(), lag=lags)
+def test_advance_to_about_there_is_quicker_and_ends_within_three_centimetres(distance, back, lag):
+    distance = -distance if back else distance
+    exact, loose = LaggingBase(lag), LaggingBase(lag)
+    start = loose.pose
+    carried_out(Advance(distance, BASE), exact)
+    _, twists = carried_out(Advance(distance, BASE, is_exact=False), loose)
+    assert loose.now_ns < exact.now_ns - 0.25 * SECOND
+    for _ in range(50):
+        reading = loose.run(STILL)
+    assert abs(start.between(reading.world_from_base).x - distance) <= 0.03
+    assert twists[-1] == STILL
+
+
+@settings(deadline=None, max_examples=60)
+@given(angle=st.floats(-2.0, 2.0).filter(lambda angle: abs(angle) > 0.1), lag=lags)
+def test_turn_to_about_there_ends_within_five_degrees(angle, lag):
+    base = LaggingBase(lag)
+    start = base.pose.heading
+    carried_out(Turn(angle, BASE, is_exact=False), base)
+    for _ in range(50):
+        reading = base.run(STILL)
+    assert abs(reading.world_from_base.heading - start - angle) <= math.radians(5.0)
+
+
 def test_overshoot_of_a_lagging_base_stays_below_two_percent():
     base = LaggingBase(0.15)
     start, most = base.pose, 0.0

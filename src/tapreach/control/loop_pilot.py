@@ -1,8 +1,11 @@
 """The Pilot that tasks are given: motions handed to the control loop."""
 
 from tapreach.control.arm_move import ArmMove
+from tapreach.control.joined_motion import InTurn, Rest, WithArm
 from tapreach.control.loop import ControlLoop
-from tapreach.control.relative_move import Advance, Turn
+from tapreach.control.motion import Motion
+from tapreach.control.relative_move import ABOUT, ABOUT_TURN, Advance, Turn
+from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import ArmPose, Odometry
 
@@ -21,6 +24,19 @@ class LoopPilot:
     async def advance(self, distance: float) -> Odometry:
         """See Pilot."""
         return await self._loop.carry_out(Advance(distance, self._robot.description.base))
+
+    async def move(self, step: PlanarStep, arm: ArmPose | None = None) -> Odometry:
+        """See Pilot."""
+        base = self._robot.description.base
+        wheels: list[Motion] = [Rest()]
+        if abs(step.advance) > ABOUT:
+            wheels.insert(0, Advance(step.advance, base, is_exact=False))
+        if abs(step.turn) > ABOUT_TURN:
+            wheels.insert(0, Turn(step.turn, base, is_exact=False))
+        motion: Motion = InTurn(wheels)
+        if arm is not None:
+            motion = WithArm(motion, ArmMove(self._loop.move_arm, arm))
+        return await self._loop.carry_out(motion)
 
     async def move_arm(self, target: ArmPose) -> None:
         """See Pilot."""

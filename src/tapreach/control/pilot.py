@@ -3,6 +3,7 @@
 from typing import Protocol
 
 from tapreach.errors import TapreachError
+from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.messages import ArmPose, Odometry
 
 
@@ -22,6 +23,13 @@ class Pilot(Protocol):
 
     async def advance(self, distance: float) -> Odometry:
         """Drive straight by `distance` [m, may be negative]; return the odometry once at rest."""
+        ...
+
+    async def move(self, step: PlanarStep, arm: ArmPose | None = None) -> Odometry:
+        """Turn and then drive without standing in between, to about there, the arm going to `arm` meanwhile.
+
+        Quicker than turn, advance and move_arm after each other. Returns the odometry once at rest.
+        """
         ...
 
     async def move_arm(self, target: ArmPose) -> None:

@@ -1,6 +1,7 @@
 """Turn by an angle, advance by a distance: on odometry, with ramps, to a stop."""
 
 import math
+from dataclasses import replace
 
 from tapreach.control.motion import Progress, Senses
 from tapreach.control.slide import Slide, SlideProfile
@@ -17,6 +18,10 @@ NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.002, math.radians(0.5)
 """What is not worth creeping for [m], [rad]: what counts is what odometry says was done."""
 CREEP, CREEP_TURN = 0.02, 0.1
 """Least speeds [m/s], [rad/s]: slower, geared hobby motors stick."""
+ABOUT, ABOUT_TURN = 0.012, math.radians(2.0)
+"""Near enough [m], [rad] where it matters little where a move ends."""
+BRISK = 6.0
+"""Speed per remaining way [1/s] of such a move: it need not land softly."""
 
 
 def advance_profile(base: BaseSection) -> SlideProfile:
@@ -33,14 +38,24 @@ def turn_profile(base: BaseSection) -> SlideProfile:
     return SlideProfile(speed, acceleration, max(NEAR_ENOUGH_TURN, tick), min(CREEP_TURN, speed))
 
 
+def about(profile: SlideProfile, near_enough: float) -> SlideProfile:
+    """Return the profile of a move that may end `near_enough` from its goal, and not at rest."""
+    tolerance = max(profile.tolerance, near_enough)
+    return replace(profile, tolerance=tolerance, landing_rate=BRISK, settle_ns=0)
+
+
 class Turn:
-    """Turn on the spot by `angle` [rad, left positive] from where the first odometry finds the base."""
+    """Turn on the spot by `angle` [rad, left positive] from where the first odometry finds the base.
+
+    is_exact: come to rest near the angle; otherwise end when it is about reached.
+    """
 
     moves_arm = False
 
-    def __init__(self, angle: float, base: BaseSection) -> None:
+    def __init__(self, angle: float, base: BaseSection, is_exact: bool = True) -> None:
         self._angle = angle
-        self._slide = Slide(angle, turn_profile(base))
+        profile = turn_profile(base)
+        self._slide = Slide(angle, profile if is_exact else about(profile, ABOUT_TURN))
         self._start: Odometry | None = None
         self._turned = 0.0
 
@@ -67,13 +82,17 @@ class Turn:
 
 
 class Advance:
-    """Drive straight by `distance` [m, negative is back] along the heading of the first odometry."""
+    """Drive straight by `distance` [m, negative is back] along the heading of the first odometry.
+
+    is_exact: come to rest near the distance; otherwise end when it is about reached.
+    """
 
     moves_arm = False
 
-    def __init__(self, distance: float, base: BaseSection) -> None:
+    def __init__(self, distance: float, base: BaseSection, is_exact: bool = True) -> None:
         self._distance = distance
-        self._slide = Slide(distance, advance_profile(base))
+        profile = advance_profile(base)
+        self._slide = Slide(distance, profile if is_exact else about(profile, ABOUT))
         self._start: Odometry | None = None
         self._driven = 0.0
 

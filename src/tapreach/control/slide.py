@@ -18,20 +18,24 @@ CLOSE = 5.0
 class SlideProfile:
     """Speed and acceleration to use, what is near enough, and the least speed that overcomes friction.
 
-    In metres or radians.
+    In metres or radians. landing_rate [1/s]: speed per remaining way near the goal. settle_ns: how long the
+    coordinate must stay near enough; 0 ends with the speed that the landing still has.
     """
 
     speed: float
     acceleration: float
     tolerance: float
     creep: float
+    landing_rate: float = LANDING_RATE
+    settle_ns: int = SETTLE_NS
 
 
 class Slide:
     """Drives a coordinate from 0 to `goal`. Feed `step` with the measured coordinate; send what it returns.
 
-    Arrives when the coordinate stays within `tolerance` of the goal, without command, for 120 ms. Each time
-    the goal was passed twice the tolerance grows by itself once more: a motor with play cannot hunt for ever.
+    Arrives when the coordinate stays within `tolerance` of the goal, without command, for `settle_ns`. Each
+    time the goal was passed twice the tolerance grows by itself once more: a motor with play cannot hunt for
+    ever.
     When the coordinate does not come nearer for 1 s although it should, that is an arrival close to the goal
     (where friction holds it; odometry knows what was really done) and a reason to give up far from it.
     """
@@ -77,7 +81,7 @@ class Slide:
     def _settle(self, now_ns: int) -> None:
         if self._inside_since_ns is None:
             self._inside_since_ns = now_ns
-        elif now_ns - self._inside_since_ns >= SETTLE_NS:
+        if now_ns - self._inside_since_ns >= self._profile.settle_ns:
             self.progress = Progress.ARRIVED
 
     def _watch_for_stall(self, distance: float, now_ns: int) -> None:
@@ -89,7 +93,7 @@ class Slide:
 
     def _next_speed(self, remaining: float, elapsed: float) -> float:
         profile, distance = self._profile, abs(remaining)
-        landing = min(math.sqrt(2.0 * profile.acceleration * distance), LANDING_RATE * distance)
+        landing = min(math.sqrt(2.0 * profile.acceleration * distance), profile.landing_rate * distance)
         wanted = min(profile.speed, max(landing, profile.creep))
         before = abs(self._speed) if self._speed * remaining > 0.0 else 0.0
         return math.copysign(min(wanted, before + profile.acceleration * elapsed), remaining)
