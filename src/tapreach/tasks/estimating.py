@@ -1,44 +1,70 @@
-"""From sightings to an estimate and to the next move; module-level functions so that `Compute.call` can
-name them.
-"""
+"""From sightings to an estimate; module-level functions so that `Compute.call` can name them."""
 
 from collections.abc import Sequence
-from math import radians
+from dataclasses import dataclass, fields
+from enum import StrEnum
+
+import numpy as np
 
 from tapreach.estimation.map_estimator import estimate_point
-from tapreach.estimation.motion_prior import MountNoise
-from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.estimation.point_estimate import PointEstimate
+from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.robot_noise import mount_noise as mount_noise
+from tapreach.tasks.robot_noise import odometry_noise as odometry_noise
 from tapreach.tasks.sighting import Sighting, observation_of
+from tapreach.tasks.straightening import straightened
 
 
-def odometry_noise(description: RobotDescription) -> OdometryNoise:
-    """Return how far this robot's file says its odometry is to be trusted."""
-    base = description.base
-    return OdometryNoise(
-        turn_per_sqrt_m=radians(base.drift_sigma_deg_per_m),
-        advance_scale=base.distance_sigma,
-        turn_scale=base.turn_sigma,
-    )
+class HeadingSource(StrEnum):
+    """Who said how the robot turned."""
+
+    BACKGROUND = "background"
+    WHEELS = "wheels"
 
 
-def mount_noise(description: RobotDescription) -> MountNoise:
-    """Return how well the camera's place on this robot is known."""
-    mount = description.camera.mount
-    return MountNoise(mount.position_sigma, radians(mount.angle_sigma_deg))
+@dataclass(frozen=True)
+class LocatedPoint(PointEstimate):
+    """An estimate from sightings, in the world of the robot's present odometry.
 
-
-def estimate(
-    sightings: Sequence[Sighting], description: RobotDescription, with_advice: bool
-) -> PointEstimate:
-    """Return where the target of the sightings is, with everything that the robot's file says of its
-    errors.
+    The world hangs on the newest base pose: what is driven from here by the wheels arrives at
+    `point_in_world`, and its covariance is that of the way from the present base (docs/decisions/0005).
+    sightings: what it rests on, their poses as they are now known. heading_from: who said how the robot
+    turned; for WHEELS `heading_reason` says why not the background.
     """
-    observations = [observation_of(sighting, description) for sighting in sightings]
-    return estimate_point(
+
+    sightings: tuple[Sighting, ...]
+    heading_from: HeadingSource
+    heading_reason: str
+
+
+def estimate(sightings: Sequence[Sighting], description: RobotDescription, with_advice: bool) -> LocatedPoint:
+    """Return where the target of the sightings is, with everything that the robot's file and the background
+    say of its motion.
+    """
+    straight = straightened(sightings, description)
+    observations = [observation_of(sighting, description) for sighting in straight.sightings]
+    found = estimate_point(
         observations,
-        odometry_noise(description),
+        straight.covariance,
         mount_noise=mount_noise(description),
         with_advice=with_advice,
     )
+    values = {field.name: getattr(found, field.name) for field in fields(found)}
+    values |= _hung_on(straight.sightings[-1].world_from_base, found)
+    source = HeadingSource.BACKGROUND if not straight.reason else HeadingSource.WHEELS
+    return LocatedPoint(
+        **values, sightings=straight.sightings, heading_from=source, heading_reason=straight.reason
+    )
+
+
+def _hung_on(world_from_base: PlanarPose, found: PointEstimate) -> dict[str, object]:
+    """Return the point and its covariance in the world that the present base is exact in."""
+    if found.point_in_base is None or found.point_cov_in_base is None:
+        return {}
+    pose = world_from_base.to_rigid()
+    rotation = pose.rotation.as_matrix()
+    return {
+        "point_in_world": np.asarray(pose.apply(found.point_in_base)),
+        "point_cov_in_world": rotation @ found.point_cov_in_base @ rotation.T,
+    }

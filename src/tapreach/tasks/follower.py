@@ -17,15 +17,12 @@ from tapreach.robot.clock import MS, SECOND
 from tapreach.robot.messages import Frame
 from tapreach.tasks import following
 from tapreach.tasks.frame_pose import pose_at
-from tapreach.tasks.guessing import DISTANCES, guesses_for
-from tapreach.tasks.sighting import TAP_SIGMA, Sighting, is_apart, ray_of, sigma_in_motion
+from tapreach.tasks.sighting import Sighting, is_apart, sigma_of_timing
+from tapreach.tasks.target_watch import Shot
 from tapreach.tasks.task import Tap, TaskContext
-from tapreach.vision.track import Track, TrackStatus
 
 T = TypeVar("T")
 
-UNSURE_FACTOR = 2.0
-"""An unsure pixel counts with this many times its sigma."""
 _RATE_OVER_NS = 40 * MS
 _SKIP_DISTANCE, _SKIP_ANGLE = 0.02, radians(2.0)
 
@@ -37,13 +34,15 @@ class TargetLost(TapreachError):
 class Follower:
     """Sightings of one tapped place, newest last in `sightings`.
 
-    key: under which the tracker is kept where the computing is done.
+    key: under which the tracker is kept where the computing is done. uses_background: False leaves all turns
+    to the wheels.
     """
 
-    def __init__(self, context: TaskContext, tap: Tap, key: int) -> None:
+    def __init__(self, context: TaskContext, tap: Tap, key: int, uses_background: bool = True) -> None:
         self._context = context
         self._tap = tap
         self._key = key
+        self._uses_background = uses_background
         self._frame_id = tap.frame_id
         self.sightings: list[Sighting] = []
         self.weakness = ""
@@ -60,13 +59,12 @@ class Follower:
     async def open(self) -> Sighting:
         """Look up the tapped frame and begin. Raises FrameError, PoseError, InputError, PictureBroken."""
         frame = self._context.frames.get(self._tap.frame_id)
-        pixel = require_inside(Pixel(self._tap.u, self._tap.v), frame.size)
-        world_from_base = await pose_at(self._context, frame.captured_ns)
-        self.weakness = await self._context.compute.call(
-            following.open_track, self._key, frame.jpeg, pixel.u, pixel.v
+        place = require_inside(Pixel(self._tap.u, self._tap.v), frame.size)
+        shot = await self._shot(frame)
+        sighting, self.weakness = await self._context.compute.call(
+            following.open_track, self._key, shot, place, self._context.description, self._uses_background
         )
-        sigma = self._in_motion(TAP_SIGMA, frame.captured_ns)
-        self.sightings.append(Sighting(frame.frame_id, frame.captured_ns, pixel, sigma, 1.0, world_from_base))
+        self.sightings.append(sighting)
         return self.last
 
     async def close(self) -> None:
@@ -102,8 +100,9 @@ class Follower:
         Frames at rest share their errors, so that they count as one.
         """
         seen: list[Sighting] = []
-        for _ in range(frames):
-            sighting = await self._follow(await self._context.next_frame(self._frame_id))
+        for left in reversed(range(frames)):
+            frame = await self._context.next_frame(self._frame_id)
+            sighting = await self._follow(frame, is_stop=left == 0)
             if sighting is not None:
                 self.sightings.pop()
                 seen.append(sighting)
@@ -123,34 +122,30 @@ class Follower:
         finally:
             waiting.cancel()
 
-    async def _follow(self, frame: Frame) -> Sighting | None:
+    async def _follow(self, frame: Frame, is_stop: bool = False) -> Sighting | None:
         self._frame_id = frame.frame_id
-        world_from_base = await pose_at(self._context, frame.captured_ns)
-        guesses = guesses_for(self.last, world_from_base, self._context.description, self._distances())
-        track = await self._context.compute.call(following.follow, self._key, frame.jpeg, guesses)
-        self.loss = track.reason if track.status is TrackStatus.LOST else ""
-        if track.pixel is None or not track.pixel.is_inside(frame.size):
-            return None
-        sigma = self._in_motion(_sigma_of(track), frame.captured_ns)
-        self.sightings.append(
-            Sighting(frame.frame_id, frame.captured_ns, track.pixel, sigma, track.scale, world_from_base)
+        shot = await self._shot(frame)
+        followed = await self._context.compute.call(
+            following.follow, self._key, shot, self.point_in_world, is_stop
         )
-        return self.last
+        self.loss = followed.loss
+        if followed.sighting is not None:
+            self.sightings.append(followed.sighting)
+        return followed.sighting
 
-    def _distances(self) -> tuple[float, ...]:
-        """Return the distances to guess with, along the line of sight of the last sighting."""
-        if self.point_in_world is None:
-            return DISTANCES
-        origin = ray_of(self.last, self._context.description).origin
-        return (float(np.linalg.norm(self.point_in_world - origin)),)
+    async def _shot(self, frame: Frame) -> Shot:
+        world_from_base = await pose_at(self._context, frame.captured_ns)
+        return Shot(
+            frame.frame_id, frame.captured_ns, frame.jpeg, world_from_base, self._moved_px(frame.captured_ns)
+        )
 
-    def _in_motion(self, sigma: float, captured_ns: int) -> float:
+    def _moved_px(self, captured_ns: int) -> float:
         poses, focal = self._context.poses, self._context.description.camera.fx
         try:
             step = poses.at(captured_ns - _RATE_OVER_NS).between(poses.at(captured_ns))
         except PoseExpired:
-            return sigma
-        return sigma_in_motion(sigma, step, _RATE_OVER_NS / SECOND, focal)
+            return 0.0
+        return sigma_of_timing(step, _RATE_OVER_NS / SECOND, focal)
 
     def _worth_following(self, frames: list[Frame]) -> list[Frame]:
         """Return the frames between which the robot moved enough to matter, the newest one, and
@@ -173,18 +168,15 @@ class Follower:
         return is_apart(first, second, _SKIP_DISTANCE, _SKIP_ANGLE)
 
 
-def _sigma_of(track: Track) -> float:
-    return track.sigma * (1.0 if track.status is TrackStatus.FOLLOWED else UNSURE_FACTOR)
-
-
 def thinned(
     stops: Iterable[Sighting], others: Iterable[Sighting], distance: float, angle: float
 ) -> list[Sighting]:
-    """Return all `stops`, and those of the `others` whose pose lies apart from all kept, in the order
-    of time.
+    """Return all `stops`, the keys among the `others`, and those of them whose pose lies apart from all
+    kept, in the order of time.
     """
     kept = list(stops)
-    for sighting in others:
-        if all(is_apart(each.world_from_base, sighting.world_from_base, distance, angle) for each in kept):
+    for sighting in sorted(others, key=lambda each: not each.is_key):
+        here = sighting.world_from_base
+        if sighting.is_key or all(is_apart(each.world_from_base, here, distance, angle) for each in kept):
             kept.append(sighting)
     return sorted(kept, key=lambda each: each.captured_ns)

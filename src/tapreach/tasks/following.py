@@ -1,17 +1,19 @@
-"""Trackers by key, kept where the computing is done; module-level functions so that `Compute.call` can
+"""Watched targets by key, kept where the computing is done; module-level functions so that `Compute.call` can
 name them.
 """
 
 from collections import OrderedDict
-from collections.abc import Sequence
 
 from tapreach.errors import TapreachError
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.pixel import Pixel
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.target_watch import Followed, Shot, TargetWatch
 from tapreach.vision.image_io import BrokenPicture, decode_gray
-from tapreach.vision.track import Guess, Track, TrackStatus
-from tapreach.vision.tracker import PatchTracker
 
-_MOST_TRACKERS = 8
-_trackers: OrderedDict[int, PatchTracker] = OrderedDict()
+_MOST_WATCHES = 8
+_watches: OrderedDict[int, TargetWatch] = OrderedDict()
 
 
 class PictureBroken(TapreachError):
@@ -22,38 +24,39 @@ class TrackUnknown(TapreachError):
     """Nothing is followed under this key: it was closed, crowded out, or the worker was restarted."""
 
 
-def open_track(key: int, jpeg: bytes, u: float, v: float) -> str:
-    """Begin to follow the place at (u, v) of a frame; return why that will be hard, '' when it will not.
+def open_track(
+    key: int, shot: Shot, place: Pixel, description: RobotDescription, uses_background: bool = True
+) -> tuple[Sighting, str]:
+    """Begin to follow the place in a frame, and the background if wanted.
 
-    Raises PictureBroken, and InputError for a pixel outside the picture. The oldest of more than 8 is
-    dropped.
+    Returns the first sighting, and why the place will be hard to follow, '' when it will not. Raises
+    PictureBroken, and InputError for a pixel outside the picture. The oldest of more than 8 is dropped.
     """
-    picture = decode_gray(jpeg)
+    picture = decode_gray(shot.jpeg)
     if isinstance(picture, BrokenPicture):
         raise PictureBroken(f"the tapped picture cannot be used: {picture.reason}; tap another one")
-    tracker = PatchTracker(picture, u, v)
-    _trackers.pop(key, None)
-    _trackers[key] = tracker
-    while len(_trackers) > _MOST_TRACKERS:
-        _trackers.popitem(last=False)
-    return tracker.weakness
+    watch = TargetWatch(picture, shot, place, description, uses_background)
+    _watches.pop(key, None)
+    _watches[key] = watch
+    while len(_watches) > _MOST_WATCHES:
+        _watches.popitem(last=False)
+    return watch.last, watch.weakness
 
 
-def follow(key: int, jpeg: bytes, guesses: Sequence[Guess] = ()) -> Track:
-    """Return where the place is in the next frame; a broken frame is a loss with a reason.
+def follow(key: int, shot: Shot, point_in_world: FloatArray | None = None, is_stop: bool = False) -> Followed:
+    """Return what the next frame shows, see TargetWatch.follow; a broken frame is a loss with a reason.
 
     Raises TrackUnknown, and InputError for a picture of another size.
     """
-    tracker = _trackers.get(key)
-    if tracker is None:
+    watch = _watches.get(key)
+    if watch is None:
         raise TrackUnknown("the followed place has been forgotten: tap it again")
-    picture = decode_gray(jpeg)
+    picture = decode_gray(shot.jpeg)
     if isinstance(picture, BrokenPicture):
-        reason = f"the picture cannot be used: {picture.reason}"
-        return Track(TrackStatus.LOST, reason, None, 0.0, 1.0, 0.0)
-    return tracker.follow(picture, guesses)
+        return Followed(None, f"the picture cannot be used: {picture.reason}")
+    return watch.follow(picture, shot, point_in_world, is_stop)
 
 
 def close_track(key: int) -> None:
     """Forget it; unknown keys do no harm."""
-    _trackers.pop(key, None)
+    _watches.pop(key, None)

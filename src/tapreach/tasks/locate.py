@@ -34,13 +34,14 @@ class LocateTask:
 
     kind = "locate"
 
-    def __init__(self, tap: Tap, target_id: int) -> None:
+    def __init__(self, tap: Tap, target_id: int, use_background: bool = True) -> None:
         self._tap = tap
         self._target_id = target_id
+        self._use_background = use_background
 
     async def run(self, context: TaskContext) -> str:
         """See Task. Raises FrameError, InputError, TargetLost, MotionInterrupted, LinkLost."""
-        follower = Follower(context, self._tap, key=self._target_id)
+        follower = Follower(context, self._tap, key=self._target_id, uses_background=self._use_background)
         report = TargetReport(self._target_id, TargetSource.LOCATE, self._tap, context.description)
         try:
             return await _Locating(context, follower, report).run()

@@ -20,8 +20,26 @@ TAP_SIGMA = 0.3
 
 
 @dataclass(frozen=True, slots=True)
+class SeenTurn:
+    """How much further left the base turned [rad] from frame `since_id` on than the wheels said, by the
+    background.
+
+    sd: one sigma [rad]; infinite where it was not seen, and `reason` then says why.
+    """
+
+    since_id: int
+    excess: float
+    sd: float
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Sighting:
-    """The target in one frame. sigma: one standard deviation of u and of v [px], motion included."""
+    """The target in one frame. sigma: one standard deviation of u and of v [px], motion included.
+
+    world_from_base: by the wheels. turn: what the background says of its heading, None where it was not
+    asked. is_key: later turns are counted from this frame.
+    """
 
     frame_id: int
     captured_ns: int
@@ -29,6 +47,8 @@ class Sighting:
     sigma: float
     scale: float
     world_from_base: PlanarPose
+    turn: SeenTurn | None = None
+    is_key: bool = False
 
 
 def observation_of(sighting: Sighting, description: RobotDescription) -> Observation:
@@ -49,15 +69,13 @@ def ray_of(sighting: Sighting, description: RobotDescription) -> Ray:
     return Ray(world_from_camera.translation, world_from_camera.rotation.apply(direction))
 
 
-def sigma_in_motion(sigma: float, step: PlanarPose, duration: float, focal: float) -> float:
-    """Return `sigma` [px] with what motion adds: the picture's speed times the uncertainty of the frame's
-    time.
+def sigma_of_timing(step: PlanarPose, duration: float, focal: float) -> float:
+    """Return one sigma [px] that motion adds: the picture's speed times the uncertainty of the frame's time.
 
     step: how the base moved in the `duration` [s] before the frame; focal [px].
     """
     turned, advanced = abs(wrapped(step.heading)), math.hypot(step.x, step.y)
-    speed_px = focal * (turned + advanced / NEAREST) / duration
-    return math.hypot(sigma, speed_px * TIMING_SIGMA)
+    return focal * (turned + advanced / NEAREST) / duration * TIMING_SIGMA
 
 
 def is_apart(first: PlanarPose, second: PlanarPose, distance: float, angle: float) -> bool:

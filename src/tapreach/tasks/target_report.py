@@ -10,6 +10,7 @@ from tapreach.estimation.point_estimate import PointEstimate
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.ray import Ray
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.task import Tap
@@ -33,6 +34,8 @@ class TargetReport:
     ) -> Target:
         """Return the target as it stands; `reason` replaces the estimate's own."""
         here = sightings[-1].world_from_base
+        if isinstance(estimate, LocatedPoint):
+            sightings = estimate.sightings
         point = estimate.point_in_world if estimate is not None else None
         rays = tuple(ray_of(sighting, self.description) for sighting in sightings)
         return Target(

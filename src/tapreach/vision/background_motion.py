@@ -64,7 +64,8 @@ class BackgroundTracker:
         self._corners = spread_corners(self._small, masked)
         self._places = self._corners.copy()
         self._shift = np.zeros(2, np.float32)
-        self._begun_with = len(self._corners)
+        self.begun_with = len(self._corners)
+        """How many places there were at first."""
 
     def __len__(self) -> int:
         """How many places are still followed."""
@@ -85,18 +86,18 @@ class BackgroundTracker:
 
     def pairs(self) -> BackgroundPairs:
         """Return the places in the first picture and in the newest one."""
-        if self._begun_with < _FEWEST:
-            return _poor(f"the picture has little texture: {self._begun_with} corners")
+        if self.begun_with < _FEWEST:
+            return _poor(f"the picture has little texture: {self.begun_with} corners")
         if len(self._corners) < _FEWEST:
-            return _poor(f"lost nearly all of {self._begun_with} corners: it left the picture, or blur")
+            return _poor(f"lost nearly all of {self.begun_with} corners: it left the picture, or blur")
         fitted, is_kept = _fitted(self._first, self._now, self._corners, self._places)
         first, now = self._corners[is_kept], fitted[is_kept]
         if len(first) < _FEWEST:
-            return _poor(f"only {len(first)} of {self._begun_with} corners still look as at first: blur?")
+            return _poor(f"only {len(first)} of {self.begun_with} corners still look as at first: blur?")
         is_kept = _moves_with_the_rest(first, now)
         first, now = first[is_kept], now[is_kept]
         if len(first) < _FEWEST:
-            return _poor(f"only {len(first)} of {self._begun_with} corners move as one")
+            return _poor(f"only {len(first)} of {self.begun_with} corners move as one")
         return BackgroundPairs(BackgroundQuality.GOOD, "", first.astype(np.float64), now.astype(np.float64))
 
 

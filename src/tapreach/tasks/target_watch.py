@@ -1,0 +1,117 @@
+"""Follows a tapped place and the background behind it, frame by frame; lives where the computing is done."""
+
+from dataclasses import dataclass, replace
+from math import hypot, radians
+
+import numpy as np
+
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.pixel import ImageSize, Pixel
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.background_watch import BackgroundWatch
+from tapreach.tasks.guessing import DISTANCES, guesses_for
+from tapreach.tasks.sighting import TAP_SIGMA, SeenTurn, Sighting, is_apart, ray_of
+from tapreach.vision.image_io import Gray
+from tapreach.vision.track import Track, TrackStatus
+from tapreach.vision.tracker import PatchTracker
+
+UNSURE_FACTOR = 2.0
+"""An unsure pixel counts with this many times its sigma."""
+_TURN_DISTANCE, _TURN_ANGLE = 0.03, radians(3.0)
+"""On the way the turn is measured this often."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """A frame and how the robot moved at it.
+
+    moved_px: one sigma [px] that the frame's time adds to what is seen in it, from the robot's speed; 0 at
+    rest.
+    """
+
+    frame_id: int
+    captured_ns: int
+    jpeg: bytes
+    world_from_base: PlanarPose
+    moved_px: float
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """What a frame showed. sighting: None when the place is not seen, and `loss` then says why."""
+
+    sighting: Sighting | None
+    loss: str
+
+
+class TargetWatch:
+    """One tapped place. The first picture is the tapped one.
+
+    uses_background: False leaves all turns to the wheels. Raises InputError for a pixel outside the picture.
+    """
+
+    def __init__(
+        self, picture: Gray, shot: Shot, place: Pixel, description: RobotDescription, uses_background: bool
+    ) -> None:
+        self._tracker = PatchTracker(picture, place.u, place.v)
+        self._size = ImageSize(picture.shape[1], picture.shape[0])
+        self._description = description
+        self._background = (
+            BackgroundWatch(picture, shot.frame_id, shot.world_from_base, description)
+            if uses_background
+            else None
+        )
+        self._measured_at = shot.world_from_base
+        sigma = hypot(TAP_SIGMA, shot.moved_px)
+        self.last = Sighting(
+            shot.frame_id, shot.captured_ns, place, sigma, 1.0, shot.world_from_base, is_key=True
+        )
+        """The newest sighting."""
+
+    @property
+    def weakness(self) -> str:
+        """Why the place will be hard to follow; '' when it will not."""
+        return self._tracker.weakness
+
+    def follow(self, picture: Gray, shot: Shot, point_in_world: FloatArray | None, is_stop: bool) -> Followed:
+        """Return what the next picture shows.
+
+        point_in_world: (3,) where the target is, as far as known. is_stop: measure the turn, and take this
+        frame as the next key. Raises InputError for a picture of another size.
+        """
+        distances = DISTANCES if point_in_world is None else (self._distance_to(point_in_world),)
+        guesses = guesses_for(self.last, shot.world_from_base, self._description, distances)
+        track = self._tracker.follow(picture, guesses)
+        if self._background is not None:
+            self._background.follow(picture)
+        loss = track.reason if track.status is TrackStatus.LOST else ""
+        if track.pixel is None or not track.pixel.is_inside(self._size):
+            return Followed(None, loss)
+        sigma = hypot(_sigma_of(track), shot.moved_px)
+        seen = Sighting(
+            shot.frame_id, shot.captured_ns, track.pixel, sigma, track.scale, shot.world_from_base
+        )
+        self.last = self._with_turn(seen, picture, is_stop)
+        return Followed(self.last, loss)
+
+    def _distance_to(self, point_in_world: FloatArray) -> float:
+        return float(np.linalg.norm(point_in_world - ray_of(self.last, self._description).origin))
+
+    def _with_turn(self, seen: Sighting, picture: Gray, is_stop: bool) -> Sighting:
+        """Return the sighting with what the background says of it, which may make it the next key."""
+        if self._background is None:
+            return seen
+        is_due = is_apart(self._measured_at, seen.world_from_base, _TURN_DISTANCE, _TURN_ANGLE)
+        if not (is_stop or is_due or self._background.is_thin):
+            return seen
+        turn: SeenTurn | None = self._background.turn_to(seen.world_from_base)
+        self._measured_at = seen.world_from_base
+        is_key = is_stop or self._background.is_thin
+        if is_key:
+            self._background.renew(picture, seen.frame_id, seen.world_from_base)
+        return replace(seen, turn=turn, is_key=is_key)
+
+
+def _sigma_of(track: Track) -> float:
+    return track.sigma * (1.0 if track.status is TrackStatus.FOLLOWED else UNSURE_FACTOR)
