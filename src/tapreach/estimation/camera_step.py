@@ -14,7 +14,7 @@ from tapreach.geometry.pose import skew
 _PLANAR_ROWS = [0, 1, 5]
 _ROCKING = 0.002
 """Pitch and roll of a chassis on its wheels, one sigma of the difference between two stops [rad]."""
-_SLIPPING = (0.1, 0.1, 0.2)
+SLIPPING = (0.1, 0.1, 0.2)
 """One sigma of x, y [m] and heading [rad] when the wheels may have slipped."""
 
 
@@ -29,6 +29,8 @@ class CameraStep:
     first_from_second: RigidTransform
     by_wheels: FloatArray
     by_mount: FloatArray
+    mount_root: FloatArray
+    """(6, m): the mount's own error per unit normal."""
     turn_axis: FloatArray
     second_camera_from_base: FloatArray
     """(6, 6): a small motion of the second base as its camera makes it."""
@@ -46,7 +48,7 @@ class CameraStep:
     def with_slip(self) -> "CameraStep":
         """Return the same step for wheels that may have slipped: hardly anything is known of it."""
         planar = np.zeros((6, 3))
-        planar[_PLANAR_ROWS] = np.diag(_SLIPPING)
+        planar[_PLANAR_ROWS] = np.diag(SLIPPING)
         return replace(self, by_wheels=self.second_camera_from_base @ planar)
 
     def moved(self, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -76,7 +78,7 @@ def camera_step(
     # A mount that is off displaces both cameras: what is left is the difference, seen from the second.
     of_mount = (np.eye(6) - inverse_adjoint(first_from_second)) @ sigmas
     up = np.asarray(base_from_camera.rotation.inv().apply([0.0, 0.0, 1.0]))
-    return CameraStep(first_from_second, to_camera @ of_base, of_mount, up, to_camera)
+    return CameraStep(first_from_second, to_camera @ of_base, of_mount, sigmas, up, to_camera)
 
 
 def inverse_adjoint(outer_from_inner: RigidTransform) -> FloatArray:

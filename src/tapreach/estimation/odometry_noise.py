@@ -110,7 +110,7 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     """
     steps = _ways(poses[:-1], poses[1:])
     count = len(steps)
-    onward = _carried(_ways(poses[0], poses[1:]))
+    onward = carried(_ways(poses[0], poses[1:]))
     backward = np.linalg.inv(onward)
     errors = np.zeros((count + 1, 3, 2 + 3 * count))
     errors[1:, :, :2] = onward @ np.cumsum(backward @ noise.scale_columns(steps), axis=0)
@@ -136,7 +136,7 @@ def with_next_errors(
     before = np.broadcast_to(last, (count, 3)), np.broadcast_to(errors[n - 1], (count, *errors.shape[1:]))
     for i in range(length):
         steps, own = _ways(before[0], coming[:, i]), slice(k + 3 * i, k + 3 * i + 3)
-        on_ways[:, i] = _carried(steps) @ before[1]
+        on_ways[:, i] = carried(steps) @ before[1]
         on_ways[:, i, :, :2] += noise.scale_columns(steps)
         on_ways[:, i, :, own] = covariance_root(noise.step_covariances(steps))
         before = coming[:, i], on_ways[:, i]
@@ -157,7 +157,7 @@ def _ways(from_poses: FloatArray, to_poses: FloatArray) -> FloatArray:
     return np.stack([x, y, apart[..., 2]], axis=-1)
 
 
-def _carried(ways: FloatArray) -> FloatArray:
+def carried(ways: FloatArray) -> FloatArray:
     """Return (n, 3, 3): what an error before a way (n, 3) amounts to in the frame after it (adjoint)."""
     x, y, heading = ways.T
     c, s = np.cos(heading), np.sin(heading)

@@ -17,6 +17,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from tapreach.estimation.background_solver import Fit, fit_step
 from tapreach.estimation.camera_step import CameraStep
 from tapreach.estimation.epipolar import PointPairs, point_pairs
+from tapreach.estimation.step_knowledge import NOTHING_SEEN, StepKnowledge, step_knowledge
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.gaussian import chi2_limit
@@ -48,6 +49,7 @@ class BackgroundRotation:
     excess_turn [rad], turn_sd: what the pictures alone say of the turn to the left, in excess of the wheels'
     (the wheels' own knowledge of the turn taken out again, so that it can be combined with odometry as an
     independent measurement); 0 and infinite for POOR. is_used: (n,) which pairs agree. noise_px: of a pixel.
+    knowledge: all that the pictures alone say, of the base's way and of the camera's mount.
     """
 
     status: BackgroundStatus
@@ -58,6 +60,7 @@ class BackgroundRotation:
     turn_sd: float
     is_used: npt.NDArray[np.bool_]
     noise_px: float
+    knowledge: StepKnowledge = NOTHING_SEEN
 
 
 def rotation_from_background(
@@ -132,7 +135,18 @@ def _result(
     rotation, translation = step.moved(fit.normals)
     pose = RigidTransform.from_components(translation, Rotation.from_matrix(rotation))
     covariance = step.by_normal @ fit.covariance @ step.by_normal.T
-    return BackgroundRotation(status, reason, pose, covariance, excess, turn_sd, fit.is_used, fit.noise_px)
+    has_slipped = status is BackgroundStatus.SLIPPED
+    return BackgroundRotation(
+        status,
+        reason,
+        pose,
+        covariance,
+        excess,
+        turn_sd,
+        fit.is_used,
+        fit.noise_px,
+        step_knowledge(fit.normals, fit.covariance, step, has_slipped),
+    )
 
 
 def _poor(reason: str, step: CameraStep) -> BackgroundRotation:
