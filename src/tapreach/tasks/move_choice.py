@@ -1,45 +1,60 @@
-"""Which turn and advance tell most about a target that must stay in the picture.
+"""Which move tells most about a target that must stay in the picture.
 
-Each candidate is scored by the bound on the range that one more view from its end would leave, over the
-supposed distances of the target. Turns are chosen by where in the picture they put the target: sideways is
-where an advance makes parallax.
+About a hundred candidates are scored at once by the bound on the range that the views on the way and at the
+end would leave, over the supposed distances of the target; then some more around the best.
 """
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from tapreach.estimation.bound import position_bound
-from tapreach.estimation.observation import Observation
+from tapreach.estimation.next_view import relative_sds_after
 from tapreach.geometry.finite import FloatArray
-from tapreach.geometry.pixel import ImageSize, Pixel
-from tapreach.geometry.planar_motion import PlanarPose, PlanarStep, wrapped
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.config import RobotDescription
-from tapreach.tasks.estimating import mount_noise, odometry_noise
+from tapreach.tasks.candidate_moves import SIGMAS, Grid, coarse_grids, finer_grid, is_seen_and_clear
+from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Sighting, observation_of
 
-COLUMNS = (0.14, 0.22, 0.32, 0.42, 0.5, 0.58, 0.68, 0.78, 0.86)
-"""Where a turn may put the target, as a share of the picture's width."""
-ADVANCES = (0.05, 0.09, 0.14, 0.22, 0.32, 0.42)
-MARGIN = 0.07
-"""The target stays this share of the picture away from its edges."""
-NEAREST = 0.25
-"""The camera comes no nearer to where the target may be [m]."""
-LONGEST_TURN = math.radians(40.0)
-VIEW_SIGMA = 0.7
-"""What a view at a stop is worth [px]."""
-_PER_METRE, _PER_RADIAN = 0.3, 0.1
-"""What driving and turning cost, in units of the logarithm of the range's relative error."""
+Score = Callable[[FloatArray, FloatArray], FloatArray]
+"""From a target (3,) and world_from_base along c moves (c, 3, 4, 4), as Grid has them, to sd(1/Z)·Z (c,)."""
+_NOTHING = 1.0
+"""What is known, as sd(1/Z)·Z, of a target for which not even the shortest advance can be made."""
+
+
+@dataclass(frozen=True, slots=True)
+class MoveCosts:
+    """What driving [1/m] and turning [1/rad] cost, in units of the logarithm of the range's relative error.
+
+    good_enough: relative errors below this are worth no more way.
+    """
+
+    per_metre: float = 0.4
+    per_radian: float = 0.1
+    good_enough: float = 0.0
+
+
+FREE_OF_CHARGE = MoveCosts(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """A move and the relative error of the range it promises (one sigma, for the middle distance)."""
+    """A move and what it promises for a target in the middle of the supposed distances.
+
+    relative_sd: sd(1/Z)·Z. distance: from the camera as it is now [m]. cost: by which it was chosen; the
+    lower of two was the better.
+    """
 
     step: PlanarStep
     relative_sd: float
+    distance: float
+    cost: float
+
+    @property
+    def sd(self) -> float:
+        """One sigma of the range that it promises [m]."""
+        return self.relative_sd * self.distance
 
 
 def choose_move(
@@ -48,117 +63,97 @@ def choose_move(
     points_in_world: Sequence[FloatArray],
     most_advance: float,
     description: RobotDescription,
+    *,
+    most_back: float = 0.0,
+    costs: MoveCosts | None = None,
+    score: Score | None = None,
 ) -> Choice | None:
-    """Return the best turn and advance from `world_from_base`; None when none keeps the target in the
-    picture.
+    """Return the best turn and advance from `world_from_base`; None when none keeps the target in view.
 
-    points_in_world: where the target may be, (3,) each, the nearest first. A move that suits all of them is
-    preferred; where there is none the nearest are given up one by one. most_advance [m]: what may still be
-    driven.
+    points_in_world: where the target may be, (3,) each, equally likely, the nearest first. The move keeps the
+    middle one in the picture and at a distance, or a farther one when that cannot be; for each of the others
+    it counts as far as it can be made. most_advance, most_back [m]: what may be driven. costs: MoveCosts()
+    when left out. score: the bound under the robot file's errors when left out.
     """
-    known = [observation_of(sighting, description) for sighting in sightings]
-    for given_up in range(len(points_in_world)):
-        points = points_in_world[given_up:]
-        choices = _scored(known, world_from_base, points, most_advance, description)
-        if choices:
-            return min(choices, key=lambda pair: pair[0])[1]
+    search = _Search(
+        world_from_base,
+        points_in_world,
+        description,
+        costs or MoveCosts(),
+        score or bound_score(sightings, description),
+    )
+    for kept in range(len(points_in_world) // 2, len(points_in_world)):
+        grids = coarse_grids(world_from_base, points_in_world[kept], most_advance, most_back, description)
+        found = [each for grid in grids if (each := search.best(grid, kept)) is not None]
+        if found:
+            return min(found, key=lambda choice: choice.cost)
     return None
 
 
-def _scored(
-    known: Sequence[Observation],
-    world_from_base: PlanarPose,
-    points_in_world: Sequence[FloatArray],
-    most_advance: float,
-    description: RobotDescription,
-) -> list[tuple[float, Choice]]:
-    """Return every candidate with its score; lower is better."""
-    scored = []
-    for step in _candidates(world_from_base, points_in_world, most_advance, description):
-        found = _relative_sds(known, world_from_base, step, points_in_world, description)
-        if found and all(map(math.isfinite, found)):
-            cost = _PER_METRE * step.advance + _PER_RADIAN * abs(step.turn)
-            score = float(np.mean(np.log(found))) + cost
-            scored.append((score, Choice(step, found[len(found) // 2])))
-    return scored
+def bound_score(sightings: Sequence[Sighting], description: RobotDescription) -> Score:
+    """Return the score by the Cramér-Rao bound of what was sighted together with what a move would show."""
+    known = [observation_of(sighting, description) for sighting in sightings]
+    motion, mount = odometry_noise(description), mount_noise(description)
+    return lambda point, ways: relative_sds_after(known, motion, mount, point, ways, SIGMAS)
 
 
-def _candidates(
-    world_from_base: PlanarPose,
-    points_in_world: Sequence[FloatArray],
-    most_advance: float,
-    description: RobotDescription,
-) -> Iterable[PlanarStep]:
-    middle = points_in_world[len(points_in_world) // 2]
-    for column in COLUMNS:
-        turn = _turn_to_column(world_from_base, middle, column, description)
-        if abs(turn) > LONGEST_TURN:
-            continue
-        for advance in ADVANCES:
-            step = PlanarStep(turn, advance)
-            if advance <= most_advance and all(
-                _is_seen_and_clear(world_from_base, step, point, description) for point in points_in_world
-            ):
-                yield step
+@dataclass(frozen=True)
+class _Search:
+    world_from_base: PlanarPose
+    points_in_world: Sequence[FloatArray]
+    description: RobotDescription
+    costs: MoveCosts
+    score: Score
+
+    def best(self, coarse: Grid, kept: int) -> Choice | None:
+        """Return the best candidate of a grid, refined twice; None when the point `kept` forbids them all."""
+        found, grid = self._best_of(coarse, kept), coarse
+        for _ in range(2):
+            if found is None:
+                return None
+            grid = finer_grid(grid, found.step.turn, found.step.advance)
+            finer = self._best_of(grid, kept)
+            found = finer if finer is not None and finer.cost < found.cost else found
+        return found
+
+    def _best_of(self, grid: Grid, kept: int) -> Choice | None:
+        relative_sds = np.array([self._relative_sds(grid, point) for point in self.points_in_world])
+        useful = np.maximum(_as_far_as_possible(relative_sds), max(self.costs.good_enough, 1e-9))
+        costs = (
+            np.log(useful).mean(axis=0)
+            + self.costs.per_radian * np.abs(grid.turns)[:, None]
+            + self.costs.per_metre * np.abs(grid.advances)[None, :]
+        )
+        costs[~np.isfinite(relative_sds[kept])] = np.inf
+        turn, advance = np.unravel_index(int(np.argmin(costs)), costs.shape)
+        if not np.isfinite(costs[turn, advance]):
+            return None
+        return Choice(
+            PlanarStep(float(grid.turns[turn]), float(grid.advances[advance])),
+            float(relative_sds[kept, turn, advance]),
+            self._distance(self.points_in_world[kept]),
+            float(costs[turn, advance]),
+        )
+
+    def _relative_sds(self, grid: Grid, point_in_world: FloatArray) -> FloatArray:
+        """Return sd(1/Z)·Z (t, a) after each candidate; infinite where the target would be lost or hit."""
+        stages = grid.stages_in_world(self.world_from_base)
+        can_be_made = is_seen_and_clear(stages, point_in_world, self.description)
+        found = np.full(can_be_made.shape, np.inf)
+        if can_be_made.any():
+            found[can_be_made] = self.score(point_in_world, stages[can_be_made])
+        return found
+
+    def _distance(self, point_in_world: FloatArray) -> float:
+        mount = self.description.camera.mount.base_from_camera()
+        camera = (self.world_from_base.to_rigid() * mount).translation
+        return float(np.linalg.norm(point_in_world - camera))
 
 
-def _turn_to_column(
-    world_from_base: PlanarPose, point: FloatArray, column: float, description: RobotDescription
-) -> float:
-    """Return the turn [rad] after which the point stands at this share of the picture's width."""
-    camera = description.camera.model()
-    wanted = math.atan2(camera.cx - column * camera.size.width, camera.fx)
-    turn = 0.0
-    # The camera stands ahead of the axis, so that the bearing from it changes a little with the turn.
-    for _ in range(3):
-        pose = world_from_base.after(PlanarStep(turn, 0.0))
-        x, _, z = _in_camera(pose, point, description)
-        turn += wrapped(math.atan2(-x, z) - wanted)
-    return turn
-
-
-def _is_seen_and_clear(
-    world_from_base: PlanarPose, step: PlanarStep, point: FloatArray, description: RobotDescription
-) -> bool:
-    for advance in (0.0, step.advance):
-        in_camera = _in_camera(world_from_base.after(PlanarStep(step.turn, advance)), point, description)
-        projection = description.camera.model().project(in_camera[None])
-        if not projection.is_inside[0] or not _is_well_inside(
-            projection.pixels[0], description.camera.model().size
-        ):
-            return False
-    return float(np.linalg.norm(in_camera)) >= NEAREST
-
-
-def _is_well_inside(pixel: FloatArray, size: ImageSize) -> bool:
-    u, v = pixel / (size.width, size.height)
-    return bool(MARGIN <= u <= 1.0 - MARGIN and MARGIN <= v <= 1.0 - MARGIN)
-
-
-def _in_camera(world_from_base: PlanarPose, point: FloatArray, description: RobotDescription) -> FloatArray:
-    world_from_camera = world_from_base.to_rigid() * description.camera.mount.base_from_camera()
-    return np.asarray(world_from_camera.inv().apply(point))
-
-
-def _relative_sds(
-    known: Sequence[Observation],
-    world_from_base: PlanarPose,
-    step: PlanarStep,
-    points_in_world: Sequence[FloatArray],
-    description: RobotDescription,
-) -> list[float]:
-    poses = [world_from_base.after(PlanarStep(step.turn, advance)) for advance in (0.0, step.advance)]
-    found = []
-    for point in points_in_world:
-        views = [*known, *(_view_of(pose, point, description) for pose in poses)]
-        bound = position_bound(views, point, odometry_noise(description), mount_noise(description))
-        if bound is None:
-            return []
-        found.append(bound.relative_sd)
-    return found
-
-
-def _view_of(pose: PlanarPose, point: FloatArray, description: RobotDescription) -> Observation:
-    pixel = description.camera.model().project(_in_camera(pose, point, description)[None]).pixels[0]
-    sighting = Sighting(0, 0, Pixel(*map(float, pixel)), VIEW_SIGMA, 1.0, pose)
-    return observation_of(sighting, description)
+def _as_far_as_possible(relative_sds: FloatArray) -> FloatArray:
+    """Return (p, t, a) with each advance that a point forbids counted as the longest one it allows."""
+    made = relative_sds.copy()
+    made[..., 0] = np.where(np.isfinite(made[..., 0]), made[..., 0], _NOTHING)
+    for i in range(1, made.shape[-1]):
+        made[..., i] = np.where(np.isfinite(made[..., i]), made[..., i], made[..., i - 1])
+    return made
