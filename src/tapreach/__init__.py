@@ -4,10 +4,12 @@ from tapreach.errors import InputError, TapreachError
 from tapreach.estimation.floor_guess import FloorGuess, FloorStatus, floor_guess
 from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.motion_prior import MountNoise
+from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.estimation.range_posterior import RangePrior
+from tapreach.estimation.tap_noise import TapNoise
 from tapreach.estimation.two_tap import TwoTapEstimate, TwoTapStatus, two_tap_from_pixels
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.pixel import ImageSize, Pixel
@@ -21,6 +23,7 @@ __all__ = [
     "ImageSize",
     "InputError",
     "MountNoise",
+    "NuisancePriors",
     "Observation",
     "OdometryNoise",
     "Pixel",
@@ -29,6 +32,7 @@ __all__ = [
     "PointEstimate",
     "RangePrior",
     "Status",
+    "TapNoise",
     "TapreachError",
     "TwoTapEstimate",
     "TwoTapStatus",

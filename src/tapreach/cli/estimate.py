@@ -34,6 +34,8 @@ def estimate(
         content.observations(),
         content.motion(),
         mount_noise=content.mount_sigmas(),
+        nuisances=content.nuisance_priors(),
+        tap_noise=content.taps(),
         range_prior=content.prior(),
     )
     typer.echo(json.dumps(as_values(result), indent=2) if as_json else as_text(result))

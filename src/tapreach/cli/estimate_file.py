@@ -10,9 +10,11 @@ from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
 from tapreach.estimation.motion_prior import Motion, MountNoise
+from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.estimation.range_posterior import RangePrior
+from tapreach.estimation.tap_noise import TapNoise
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.pixel import ImageSize, Pixel
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
@@ -103,6 +105,31 @@ class MountNoisePart(Part):
     angle_sigma: NotNegative = 0.0
 
 
+class NuisancesPart(Part):
+    """One sigma of what is taken as known and is not quite, one error for all views; docs/estimation.md, 3.
+
+    focal_scale, turn_scale, distance_scale are fractions; lever [m] of each coordinate of the camera on the
+    base; yaw, pitch, roll [rad] of the camera on the base.
+    """
+
+    focal_scale: NotNegative = 0.0
+    turn_scale: NotNegative = 0.0
+    distance_scale: NotNegative = 0.0
+    lever: NotNegative = 0.0
+    yaw: NotNegative = 0.0
+    pitch: NotNegative = 0.0
+    roll: NotNegative = 0.0
+
+
+class TapNoisePart(Part):
+    """How the errors of the taps hang together: correlation of each with the one before, and one sigma of an
+    error that all share [px].
+    """
+
+    correlation: float = Field(0.0, gt=-1.0, lt=1.0)
+    shared_bias_px: NotNegative = 0.0
+
+
 class RangePriorPart(Part):
     """Ranges [m] that are possible at all."""
 
@@ -123,6 +150,8 @@ class EstimateFile(Part):
     odometry: OdometryPart | None = None
     pose_covariance: list[list[float]] | None = None
     mount_noise: MountNoisePart | None = None
+    nuisances: NuisancesPart | None = None
+    tap_noise: TapNoisePart | None = None
     range_prior: RangePriorPart = RangePriorPart()
 
     @model_validator(mode="after")
@@ -176,6 +205,14 @@ class EstimateFile(Part):
     def mount_sigmas(self) -> MountNoise | None:
         """Return the mount's noise."""
         return MountNoise(**self.mount_noise.model_dump()) if self.mount_noise is not None else None
+
+    def nuisance_priors(self) -> NuisancePriors | None:
+        """Return the further things that may be off."""
+        return NuisancePriors(**self.nuisances.model_dump()) if self.nuisances is not None else None
+
+    def taps(self) -> TapNoise | None:
+        """Return how the errors of the taps hang together."""
+        return TapNoise(**self.tap_noise.model_dump()) if self.tap_noise is not None else None
 
     def prior(self) -> RangePrior:
         """Return the ranges that are possible."""

@@ -58,7 +58,7 @@ def _kind(value: dict[str, Any]) -> str:
     return " ".join([str(value["type"]), *limits])
 
 
-_LIMITS = {"exclusiveMinimum": ">", "minimum": "≥"}
+_LIMITS = {"exclusiveMinimum": ">", "exclusiveMaximum": "<", "minimum": "≥"}
 
 
 def _default(value: dict[str, Any]) -> str:

@@ -7,7 +7,9 @@ import numpy as np
 
 from tapreach.estimation.motion_prior import Motion, MountNoise
 from tapreach.estimation.next_view import relative_sds_after
+from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
+from tapreach.estimation.tap_noise import TapNoise
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarStep
 
@@ -21,6 +23,8 @@ def advice_to_halve(
     mount_noise: MountNoise | None,
     point_in_world: FloatArray,
     relative_sd: float,
+    nuisances: NuisancePriors | None = None,
+    tap_noise: TapNoise | None = None,
 ) -> str:
     """Return the shortest next move that halves the error of 1/Z at `point_in_world`, or what the best gains.
 
@@ -28,7 +32,9 @@ def advice_to_halve(
     """
     steps = [PlanarStep(math.radians(turn), advance) for advance in _ADVANCES for turn in _TURNS_DEG]
     bases = observations[-1].world_from_base.as_matrix() @ np.array([_matrix(step) for step in steps])
-    found = relative_sds_after(observations, motion, mount_noise, point_in_world, bases).tolist()
+    found = relative_sds_after(
+        observations, motion, mount_noise, point_in_world, bases, nuisances=nuisances, tap_noise=tap_noise
+    ).tolist()
     best: tuple[float, PlanarStep] | None = None
     for first in range(0, len(steps), len(_TURNS_DEG)):
         same_advance = slice(first, first + len(_TURNS_DEG))

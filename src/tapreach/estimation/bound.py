@@ -8,7 +8,9 @@ import numpy.typing as npt
 
 from tapreach.estimation.map_solver import inverse_depth_information
 from tapreach.estimation.motion_prior import Motion, MountNoise, camera_errors
+from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
+from tapreach.estimation.tap_noise import TapNoise
 from tapreach.estimation.view_model import view_model
 from tapreach.geometry.finite import FloatArray, finite_array
 
@@ -29,13 +31,17 @@ def position_bound(
     point_in_world: npt.ArrayLike,
     motion: Motion = None,
     mount_noise: MountNoise | None = None,
+    nuisances: NuisancePriors | None = None,
+    tap_noise: TapNoise | None = None,
 ) -> Bound | None:
     """Return the bound for a target at `point_in_world` (3,), pose errors marginalised under their priors.
 
     The pixels of the observations do not matter, but for the lens there. None where the target is behind one
     of the cameras.
     """
-    model = view_model(observations, camera_errors(observations, motion, mount_noise))
+    taps = tap_noise or TapNoise()
+    errors = camera_errors(observations, motion, mount_noise, nuisances, taps.shared_bias_px)
+    model = view_model(observations, errors, taps.correlation)
     camera_from_world = observations[0].world_from_camera.inv()
     x, y, z = camera_from_world.apply(finite_array("point_in_world", point_in_world, (3,)))
     if z <= 0.0:

@@ -13,11 +13,13 @@ from tapreach.estimation.advice import advice_to_halve
 from tapreach.estimation.depth_knowledge import DepthKnowledge, depth_knowledge
 from tapreach.estimation.map_solver import Solution, covariance_of
 from tapreach.estimation.motion_prior import Motion, MountNoise, camera_errors
+from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.outlier import solve_without_outliers
 from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.estimation.point_in_frames import points_in_world_and_base
 from tapreach.estimation.range_posterior import RangePrior
+from tapreach.estimation.tap_noise import TapNoise
 from tapreach.estimation.verdict import reason_without_baseline, verdict
 from tapreach.estimation.view_model import ViewModel, view_model
 from tapreach.geometry.finite import FloatArray
@@ -28,6 +30,8 @@ def estimate_point(
     motion: Motion = None,
     *,
     mount_noise: MountNoise | None = None,
+    nuisances: NuisancePriors | None = None,
+    tap_noise: TapNoise | None = None,
     range_prior: RangePrior | None = None,
     with_advice: bool = True,
 ) -> PointEstimate:
@@ -37,14 +41,18 @@ def estimate_point(
     motion: what is known of the poses world_from_base: None for exact, OdometryNoise for poses along a drive,
     or their covariance [m², m·rad, rad²] in tangent order (translation, rotation), right perturbation: joint
     (6n, 6n) or independent (n, 6, 6). mount_noise: of the camera on the base, one error shared by all views.
-    range_prior: ranges that are possible at all. with_advice: look for the next move too (some ms).
+    nuisances: further things shared by all views that may be off. tap_noise: how the errors of the taps hang
+    together; None for independent ones. Single taps far off need no option: they are tested, named and left
+    out. range_prior: ranges that are possible at all. with_advice: look for the next move too (some ms).
 
     Never fails on geometry: a singular or contradictory set of views is a result with its status and reason.
     Raises InputError where there is no observation or a covariance cannot be one.
     """
     if not observations:
         raise InputError("there are no observations; give at least one, and two or more for a depth")
-    model = view_model(observations, camera_errors(observations, motion, mount_noise))
+    taps = tap_noise or TapNoise()
+    errors = camera_errors(observations, motion, mount_noise, nuisances, taps.shared_bias_px)
+    model = view_model(observations, errors, taps.correlation)
     reason = reason_without_baseline(model)
     if reason is not None:
         return _unknown(Status.DEGENERATE, reason, model)
@@ -53,7 +61,11 @@ def estimate_point(
         return _unknown(Status.INCONSISTENT, "no point lies in front of all the cameras", model)
     model, solution = solved
     depth = depth_knowledge(model, solution, range_prior or RangePrior())
-    advice = _advice(observations, motion, mount_noise, solution, depth) if with_advice else ""
+    advice = ""
+    if with_advice:
+        point = _likely_point(observations, solution, depth)
+        relative_sd = depth.sd * depth.likely_range() / depth.slant
+        advice = advice_to_halve(observations, motion, mount_noise, point, relative_sd, nuisances, taps)
     return _answer(observations, model, solution, depth, advice)
 
 
@@ -95,7 +107,7 @@ def _answer(
 
 
 def _residuals_px(model: ViewModel, solution: Solution) -> FloatArray:
-    if np.all(model.is_used):
+    if np.all(model.is_used) and model.whitening is None:
         return solution.views.residuals.reshape(-1, 2) * model.sigmas[:, None]
     return model.residuals_px(solution.x)
 
@@ -123,14 +135,9 @@ def _unknown(
     )
 
 
-def _advice(
-    observations: Sequence[Observation],
-    motion: Motion,
-    mount_noise: MountNoise | None,
-    solution: Solution,
-    depth: DepthKnowledge,
-) -> str:
-    likely_depth = depth.likely_range() / depth.slant
-    in_camera = likely_depth * np.array([*solution.x[:2], 1.0])
-    point = np.asarray(observations[0].world_from_camera.apply(in_camera))
-    return advice_to_halve(observations, motion, mount_noise, point, depth.sd * likely_depth)
+def _likely_point(
+    observations: Sequence[Observation], solution: Solution, depth: DepthKnowledge
+) -> FloatArray:
+    """Return a target (3,) in the world to plan with."""
+    in_camera = depth.likely_range() / depth.slant * np.array([*solution.x[:2], 1.0])
+    return np.asarray(observations[0].world_from_camera.apply(in_camera))

@@ -8,7 +8,9 @@ import numpy.typing as npt
 from tapreach.estimation.linearised import Linearised
 from tapreach.estimation.map_solver import inverse_depth_information
 from tapreach.estimation.motion_prior import CameraErrors, Motion, MountNoise, camera_errors_with_next
+from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
+from tapreach.estimation.tap_noise import TapNoise, whitening
 from tapreach.estimation.view_model import ViewModel, camera_ways, pixel_weights, sighted
 from tapreach.geometry.finite import FloatArray
 
@@ -20,6 +22,8 @@ def relative_sds_after(
     point_in_world: FloatArray,
     world_from_bases: FloatArray,
     pixel_sigmas: npt.ArrayLike | None = None,
+    nuisances: NuisancePriors | None = None,
+    tap_noise: TapNoise | None = None,
 ) -> FloatArray:
     """Return the bound on sd(1/Z)·Z (c,) with more views by the last camera, from each of c ways of the base.
 
@@ -38,17 +42,29 @@ def relative_sds_after(
     points = cameras @ [x, y, z, 1.0]
     relative_sds = np.full(len(ways), np.inf)
     count = len(observations)
-    is_seen = last.camera.project(points[count:]).is_inside.reshape(-1, length).all(axis=1)
+    coming = last.camera.project(points[count:])
+    is_seen = coming.is_inside.reshape(-1, length).all(axis=1)
     seen = np.flatnonzero(is_seen)
     if z <= 0.0 or np.any(points[:count, 2] <= 0.0) or len(seen) == 0:
         return relative_sds
-    kept = np.concatenate([np.arange(count), count + np.flatnonzero(np.repeat(is_seen, length))])
-    errors = camera_errors_with_next(observations, motion, mount_noise, ways[seen])
+    further = np.flatnonzero(np.repeat(is_seen, length))
+    kept = np.concatenate([np.arange(count), count + further])
+    taps = tap_noise or TapNoise()
+    errors = camera_errors_with_next(
+        observations,
+        motion,
+        mount_noise,
+        ways[seen],
+        coming.pixels[further],
+        nuisances,
+        taps.shared_bias_px,
+    )
     sigmas = np.tile(np.broadcast_to(_sigmas(last, pixel_sigmas), length), len(seen))
     model = _model(observations, cameras[kept], points[kept], sigmas, errors)
     unknowns = np.zeros((1, model.unknowns))
     unknowns[0, :3] = x / z, y / z, 1.0 / z
-    for index, on_target in zip(seen, _with_each(model.linearised(unknowns), count, length), strict=True):
+    found = _with_each(model.linearised(unknowns), count, length, taps.correlation)
+    for index, on_target in zip(seen, found, strict=True):
         on_depth = inverse_depth_information(on_target)
         if on_depth > 1e-12 * on_target[2, 2]:
             relative_sds[index] = z / np.sqrt(on_depth)
@@ -81,16 +97,20 @@ def _model(
     )
 
 
-def _with_each(views: Linearised, count: int, length: int) -> FloatArray:
+def _with_each(views: Linearised, count: int, length: int, correlation: float) -> FloatArray:
     """Return the information (c, 3, 3) of the first `count` views with each `length` of the others."""
+    white: FloatArray = np.eye(2 * (count + length))
+    if correlation != 0.0:
+        independent = whitening(correlation, np.ones(count + length, dtype=bool))
+        white = np.asarray(np.kron(independent, np.eye(2)), dtype=np.float64)
     coming = np.arange(2 * count, views.residuals.shape[1]).reshape(-1, 2 * length)
     known = np.broadcast_to(np.arange(2 * count), (len(coming), 2 * count))
     rows = np.concatenate([known, coming], axis=1)
     each = np.zeros(len(rows), dtype=np.intp)
     return Linearised(
         views.x[each],
-        views.residuals[0][rows],
-        views.by_target[0][rows],
-        views.by_errors[0][rows],
+        views.residuals[0][rows] @ white.T,
+        white @ views.by_target[0][rows],
+        white @ views.by_errors[0][rows],
         views.is_in_front[each],
     ).on_target()

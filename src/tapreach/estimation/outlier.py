@@ -32,7 +32,7 @@ def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | Non
 def _best_without_one(
     model: ViewModel, solution: Solution, hoped: float
 ) -> tuple[ViewModel, Solution] | None:
-    expected = _expected_gains(solution)
+    expected = _expected_gains(solution, model.whitening)
     best: tuple[ViewModel, Solution] | None = None
     for view in np.argsort(expected)[::-1][:_TRIED]:
         if expected[view] < hoped:
@@ -44,7 +44,7 @@ def _best_without_one(
     return best
 
 
-def _expected_gains(solution: Solution) -> FloatArray:
+def _expected_gains(solution: Solution, whitening: FloatArray | None) -> FloatArray:
     """Return (n,): the linear prediction of how much the cost falls without each view.
 
     I − P = C⁻¹ − C⁻¹ Jt S⁻¹ Jtᵀ C⁻¹, of which the diagonal blocks are needed.
@@ -54,7 +54,10 @@ def _expected_gains(solution: Solution) -> FloatArray:
     precision = views.solved(np.eye(len(residuals))[None])[0]
     pull = precision @ views.by_target[0]
     damped = solution.on_target + 1e-12 * np.diag(np.diag(views.by_target[0].T @ views.by_target[0]))
-    remaining = (precision - pull @ np.linalg.solve(damped, pull.T)).reshape(-1, 2, len(residuals) // 2, 2)
+    remaining = precision - pull @ np.linalg.solve(damped, pull.T)
+    if whitening is not None:  # a slip shifts one tap, and so what is expected of the next
+        remaining, residuals = whitening.T @ remaining @ whitening, whitening.T @ residuals
+    remaining = remaining.reshape(-1, 2, len(residuals) // 2, 2)
     every = np.arange(len(remaining))
     blocks = remaining[every, :, every] + 1e-9 * np.eye(2)
     pairs = residuals.reshape(-1, 2)

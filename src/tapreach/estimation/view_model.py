@@ -19,6 +19,7 @@ from tapreach.estimation.camera_matrices import CameraMatrices, camera_matrices
 from tapreach.estimation.linearised import Linearised
 from tapreach.estimation.motion_prior import CameraErrors
 from tapreach.estimation.observation import Observation
+from tapreach.estimation.tap_noise import whitening
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.lens import distortion_jacobian
@@ -37,6 +38,7 @@ class ViewModel:
     nominal (n, 3, 4): projection from the first camera's homogeneous points into each camera, poses exact.
     measured (n, 2): sighted (x/z, y/z). weights (n, 2, 2): from an error in (x/z, y/z) to pixels over sigma.
     sigmas (n,) [px]. is_used (n,): False for views that were left out; they are predicted and weigh nothing.
+    correlation: of each tap's error with that of the tap before.
     """
 
     nominal: FloatArray
@@ -45,6 +47,7 @@ class ViewModel:
     sigmas: FloatArray
     errors: CameraErrors
     is_used: npt.NDArray[np.bool_]
+    correlation: float = 0.0
 
     @property
     def views(self) -> int:
@@ -98,14 +101,37 @@ class ViewModel:
         residuals = (self._used_weights @ (projected - self.measured)[..., None])[..., 0]
         by_target = slopes @ cameras.matrices[..., _TARGET_COLUMNS]
         by_errors = cameras.by_normals(slopes, points, homogeneous)
-        count = len(x)
+        if self._by_picture is not None:
+            residuals += (self._by_picture @ x[:, None, 3:, None])[..., 0]
+            by_errors += self._by_picture
+        count, rows = len(x), 2 * self.views
         return Linearised(
             x,
-            residuals.reshape(count, -1),
-            by_target.reshape(count, 2 * self.views, 3),
-            by_errors.reshape(count, 2 * self.views, -1),
+            self._whitened(residuals.reshape(count, rows)),
+            self._whitened(by_target.reshape(count, rows, 3)),
+            self._whitened(by_errors.reshape(count, rows, -1)),
             is_in_front,
         )
+
+    @cached_property
+    def whitening(self) -> FloatArray | None:
+        """W (2n, 2n) that makes the taps' errors independent; None where they are already."""
+        if self.correlation == 0.0:
+            return None
+        return np.asarray(np.kron(whitening(self.correlation, self.is_used), np.eye(2)), dtype=np.float64)
+
+    def _whitened(self, rows: FloatArray) -> FloatArray:
+        """Return (m, 2n) or (m, 2n, c) with errors made independent."""
+        if self.whitening is None:
+            return rows
+        return np.asarray(rows @ self.whitening.T if rows.ndim == 2 else self.whitening @ rows)
+
+    @cached_property
+    def _by_picture(self) -> FloatArray | None:
+        """Residuals (n, 2, k) by what is wrong with the pictures, over sigma, 0 for views left out."""
+        if self.errors.by_pixel is None:
+            return None
+        return self.errors.by_pixel * (self.is_used / self.sigmas)[:, None, None]
 
     def costs_without_pose_errors(self, starts: FloatArray) -> FloatArray:
         """Return the squared residuals over sigma (m,) of (a, b, rho) (m, 3); infinite behind a view used."""
@@ -115,15 +141,18 @@ class ViewModel:
         is_in_front = np.all(is_before | ~self.is_used, axis=1)
         projected = points[..., :2] / np.where(is_before, points[..., 2], 1.0)[..., None]
         residuals = self._used_weights @ (projected - self.measured)[..., None]
-        return np.where(is_in_front, np.sum(residuals * residuals, axis=(1, 2, 3)), np.inf)
+        white = self._whitened(residuals.reshape(len(starts), -1))
+        return np.where(is_in_front, np.sum(white * white, axis=1), np.inf)
 
     def residuals_px(self, x: FloatArray) -> FloatArray:
         """Return predicted minus observed (n, 2) [px] at x (3 + k,); infinite where it is behind a view."""
         points = self.cameras(x[None]).matrices[0] @ [x[0], x[1], 1.0, x[2]]
         depth = points[:, 2, None]
         projected = points[:, :2] / np.where(depth > _IN_FRONT, depth, 1.0)
-        residuals = (self.weights @ (projected - self.measured)[:, :, None])[:, :, 0]
-        return np.where(depth > _IN_FRONT, residuals * self.sigmas[:, None], np.inf)
+        residuals = (self.weights @ (projected - self.measured)[:, :, None])[:, :, 0] * self.sigmas[:, None]
+        if self.errors.by_pixel is not None:
+            residuals += self.errors.by_pixel @ x[3:]
+        return np.where(depth > _IN_FRONT, residuals, np.inf)
 
     def without(self, view: int) -> "ViewModel":
         """Return the same model with one more view left out."""
@@ -149,12 +178,14 @@ def homogeneous_points(x: FloatArray) -> FloatArray:
     return points
 
 
-def view_model(observations: Sequence[Observation], errors: CameraErrors) -> ViewModel:
+def view_model(
+    observations: Sequence[Observation], errors: CameraErrors, correlation: float = 0.0
+) -> ViewModel:
     """Return the stacked model of the observations, the first one as reference."""
     measured, weights, sigmas = sighted(observations)
     used = np.ones(len(observations), dtype=bool)
     ways = camera_ways(observations, np.zeros((0, 4, 4)))
-    return ViewModel(ways, measured, weights, sigmas, errors, used)
+    return ViewModel(ways, measured, weights, sigmas, errors, used, correlation)
 
 
 def sighted(observations: Sequence[Observation]) -> tuple[FloatArray, FloatArray, FloatArray]:
