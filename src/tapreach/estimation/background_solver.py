@@ -4,12 +4,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
 from tapreach.estimation.camera_step import CameraStep
 from tapreach.estimation.epipolar import PointPairs, sampson, sampson_distances, turn_alone
+from tapreach.estimation.small_rotations import backward_rotations
 from tapreach.geometry.finite import FloatArray
-from tapreach.geometry.pose import right_jacobians
 
 _LEAST_NOISE = 0.05
 """No tracker is better than so many pixels."""
@@ -76,7 +75,7 @@ def _spread_along_valley(fit: Fit, pairs: PointPairs, step: CameraStep) -> Fit:
     by_turn = step.turn_axis @ step.by_normal[3:]
     along = fit.covariance @ by_turn / max(float(np.sqrt(by_turn @ fit.covariance @ by_turn)), 1e-12)
     places = fit.normals + np.outer(_SIGMAS_ASIDE, along)
-    costs = np.array([_truncated_cost(pairs, step, normals, fit.noise_px) for normals in places])
+    costs = _truncated_costs(pairs, step, places, fit.noise_px)
     weights = np.exp(-0.5 * (costs - costs.min()))
     weights /= weights.sum()
     mean = float(weights @ _SIGMAS_ASIDE)
@@ -88,14 +87,15 @@ def _spread_along_valley(fit: Fit, pairs: PointPairs, step: CameraStep) -> Fit:
     )
 
 
-def _truncated_cost(pairs: PointPairs, step: CameraStep, normals: FloatArray, noise: float) -> float:
-    rotation, translation = step.moved(normals)
+def _truncated_costs(pairs: PointPairs, step: CameraStep, places: FloatArray, noise: float) -> FloatArray:
+    """Return the cost (m,) of normals (m, k), no pair counting for more than the gate."""
+    rotations, translations = step.moved(places)
     if _has_parallax(step):
-        residuals = sampson_distances(pairs, rotation, translation)
+        squared = sampson_distances(pairs, rotations, translations) ** 2
     else:
-        residuals = turn_alone(pairs, rotation)[0]
-    scaled = np.max(residuals**2, axis=1) / noise**2
-    return float(np.sum(np.minimum(scaled, _GATE**2)) + normals @ normals)
+        apart = [turn_alone(pairs, rotation)[0] for rotation in rotations]
+        squared = np.max(np.square(apart), axis=2).T
+    return np.asarray(np.sum(np.minimum(squared / noise**2, _GATE**2), axis=0) + np.sum(places**2, axis=1))
 
 
 def residuals_at(pairs: PointPairs, step: CameraStep, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -110,13 +110,12 @@ def residuals_at(pairs: PointPairs, step: CameraStep, normals: FloatArray) -> tu
         residuals, by_pose = turn_alone(pairs, rotation)
     error = step.by_normal @ normals
     by_error = np.zeros((6, 6))
-    by_error[:3, :3] = Rotation.from_rotvec(-error[3:]).as_matrix()
-    by_error[3:, 3:] = right_jacobians(error[None, 3:])[0]
+    by_error[:3, :3], by_error[3:, 3:] = backward_rotations(error[3:])
     return residuals, by_pose @ (by_error @ step.by_normal)
 
 
 def _has_parallax(step: CameraStep) -> bool:
-    return float(np.linalg.norm(step.first_from_second.translation)) > _LEAST_WAY
+    return float(np.linalg.norm(step.translation)) > _LEAST_WAY
 
 
 def _refined(pairs: PointPairs, step: CameraStep, normals: FloatArray, noise: float) -> Fit:

@@ -1,12 +1,14 @@
 """What the wheels say of how the camera moved between two pictures, and how wrong that may be."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.motion_prior import MountNoise
 from tapreach.estimation.odometry_noise import OdometryNoise, pose_errors
+from tapreach.estimation.small_rotations import backward_rotations
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import skew
@@ -35,7 +37,17 @@ class CameraStep:
     second_camera_from_base: FloatArray
     """(6, 6): a small motion of the second base as its camera makes it."""
 
-    @property
+    @cached_property
+    def rotation(self) -> FloatArray:
+        """(3, 3): that of first_from_second."""
+        return np.asarray(self.first_from_second.rotation.as_matrix())
+
+    @cached_property
+    def translation(self) -> FloatArray:
+        """(3,) [m]: that of first_from_second."""
+        return np.asarray(self.first_from_second.translation)
+
+    @cached_property
     def by_normal(self) -> FloatArray:
         """All errors, (6, k + m)."""
         return np.concatenate([self.by_wheels, self.by_mount], axis=1)
@@ -52,11 +64,11 @@ class CameraStep:
         return replace(self, by_wheels=self.second_camera_from_base @ planar)
 
     def moved(self, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return rotation (3, 3) and translation (3,) of the step with the errors of `normals`."""
-        error = self.by_normal @ normals
-        rotation = self.first_from_second.rotation.as_matrix()
-        turned = rotation @ Rotation.from_rotvec(error[3:]).as_matrix()
-        return turned, np.asarray(self.first_from_second.translation) + rotation @ error[:3]
+        """Return rotations (..., 3, 3) and translations (..., 3) of the step with errors `normals` (..., k)."""
+        errors = normals @ self.by_normal.T
+        back, _ = backward_rotations(errors[..., 3:])
+        translations = self.translation + errors[..., :3] @ self.rotation.T
+        return self.rotation @ np.swapaxes(back, -1, -2), translations
 
 
 def camera_step(

@@ -5,13 +5,18 @@ first_from_second = (R, t): (nu, omega) makes it (R exp(omega), t + R nu).
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from tapreach.errors import InputError
+from tapreach.estimation.small_rotations import cross_matrices
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pose import skew
+
+_GENERATORS = cross_matrices(np.eye(3))
+"""(3, 3, 3): d exp(omega) / d omega at 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +30,22 @@ class PointPairs:
     def __len__(self) -> int:
         return len(self.first)
 
-    def only(self, rows: np.ndarray) -> "PointPairs":
-        """Return the pairs of some rows."""
-        return PointPairs(self.first[rows], self.second[rows], self.focal)
+    @cached_property
+    def by_essential(self) -> FloatArray:
+        """(5 n, 9): what multiplies the nine elements of an essential matrix E to give the gap xᵀ E y of every
+        pair, then the four slopes of (8) by the pixels [1/px].
+        """
+        first, second = self.first, self.second
+        rows = np.zeros((5, len(first), 3, 3))
+        rows[0] = first[:, :, None] * second[:, None, :]
+        rows[1, :, 0], rows[2, :, 1] = second / self.focal[0], second / self.focal[1]
+        rows[3, :, :, 0], rows[4, :, :, 1] = first / self.focal[0], first / self.focal[1]
+        return rows.reshape(-1, 9)
+
+    def gaps_and_slopes(self, essentials: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return gaps (n, m) and slopes (4, n, m) for matrices (m, 3, 3); linear in them."""
+        found = (self.by_essential @ essentials.reshape(-1, 9).T).reshape(5, len(self), -1)
+        return found[0], found[1:]
 
 
 def point_pairs(first_px: FloatArray, second_px: FloatArray, camera: Camera) -> PointPairs:
@@ -48,69 +66,32 @@ def point_pairs(first_px: FloatArray, second_px: FloatArray, camera: Camera) -> 
     )
 
 
-def sampson_distances(pairs: PointPairs, rotation: FloatArray, translation: FloatArray) -> FloatArray:
-    """Return how far pairs are from their epipolar lines (n, 1) [px] (docs/estimation.md, 11).
+def sampson_distances(pairs: PointPairs, rotations: FloatArray, translations: FloatArray) -> FloatArray:
+    """Return how far pairs are from their epipolar lines (n, m) [px] (docs/estimation.md, 11).
 
-    The length of the translation does not matter, only its direction; it must not be zero.
+    For m poses: rotations (m, 3, 3), translations (m, 3). The length of a translation does not matter, only
+    its direction; it must not be zero.
     """
-    in_first, in_second = _epipolar_lines(pairs, rotation, translation)
-    gap = np.sum(pairs.first * in_first, axis=1)
-    return np.asarray(gap / _lengths(_slopes(pairs, in_first, in_second)))[:, None]
+    gaps, slopes = pairs.gaps_and_slopes(cross_matrices(translations) @ rotations)
+    return np.asarray(gaps / _lengths(slopes))
 
 
 def sampson(
     pairs: PointPairs, rotation: FloatArray, translation: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return `sampson_distances` (n, 1) [px] and their derivative by (nu, omega) (n, 1, 6)."""
-    turned = pairs.second @ rotation.T
-    in_first, in_second = _epipolar_lines(pairs, rotation, translation)
-    gap = np.sum(pairs.first * in_first, axis=1)
-    slopes = _slopes(pairs, in_first, in_second)
-    length = _lengths(slopes)
-    by_pose = _gap_by_pose(pairs, rotation, turned, in_second)
-    slopes_by_pose = _slopes_by_pose(pairs, rotation, translation, turned, in_second)
-    length_by_pose = (slopes[:, None, :] @ slopes_by_pose)[:, 0] / length[:, None]
-    jacobian = by_pose / length[:, None] - (gap / length**2)[:, None] * length_by_pose
-    return (gap / length)[:, None], jacobian[:, None, :]
-
-
-def _epipolar_lines(
-    pairs: PointPairs, rotation: FloatArray, translation: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    cross = skew(translation)
-    return pairs.second @ (cross @ rotation).T, pairs.first @ (cross @ rotation)
-
-
-def _slopes(pairs: PointPairs, in_first: FloatArray, in_second: FloatArray) -> FloatArray:
-    """Return (n, 4): how fast the gap grows with the pixels of both pictures."""
-    return np.concatenate([in_first[:, :2], in_second[:, :2]], axis=1) / np.tile(pairs.focal, 2)
+    """Return `sampson_distances` (n, 1) [px] of one pose and their derivative by (nu, omega) (n, 1, 6)."""
+    essential = cross_matrices(translation) @ rotation
+    by_pose = np.concatenate([rotation @ _GENERATORS, essential @ _GENERATORS])
+    gaps, slopes = pairs.gaps_and_slopes(np.concatenate([essential[None], by_pose]))
+    length = _lengths(slopes[:, :, :1])
+    distance = gaps[:, :1] / length
+    length_by_pose = np.sum(slopes[:, :, :1] * slopes[:, :, 1:], axis=0) / length
+    jacobian = (gaps[:, 1:] - distance * length_by_pose) / length
+    return distance, jacobian[:, None, :]
 
 
 def _lengths(slopes: FloatArray) -> FloatArray:
-    return np.asarray(np.maximum(np.linalg.norm(slopes, axis=1), 1e-30))
-
-
-def _gap_by_pose(
-    pairs: PointPairs, rotation: FloatArray, turned: FloatArray, in_second: FloatArray
-) -> FloatArray:
-    by_shift = np.cross(turned, pairs.first) @ rotation
-    return np.concatenate([by_shift, np.cross(pairs.second, in_second)], axis=1)
-
-
-def _slopes_by_pose(
-    pairs: PointPairs,
-    rotation: FloatArray,
-    translation: FloatArray,
-    turned: FloatArray,
-    in_second: FloatArray,
-) -> FloatArray:
-    """Return d (first two coordinates of both epipolar lines, over the focal lengths) (n, 4, 6)."""
-    first = np.concatenate(
-        [-skew(turned) @ rotation, -skew(translation) @ rotation @ skew(pairs.second)], axis=2
-    )
-    second = np.concatenate([rotation.T @ skew(pairs.first) @ rotation, skew(in_second)], axis=2)
-    both = np.concatenate([first[:, :2], second[:, :2]], axis=1)
-    return np.asarray(both / np.tile(pairs.focal, 2)[:, None])
+    return np.asarray(np.maximum(np.sqrt(np.sum(slopes**2, axis=0)), 1e-30))
 
 
 def turn_alone(pairs: PointPairs, rotation: FloatArray) -> tuple[FloatArray, FloatArray]:
