@@ -13,8 +13,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
-from tapreach.estimation.camera_step import SLIPPING, inverse_adjoint
-from tapreach.estimation.motion_prior import CameraErrors, MountNoise
+from tapreach.estimation.camera_step import SLIPPING
+from tapreach.estimation.motion_prior import MountNoise, PoseErrors
 from tapreach.estimation.odometry_noise import OdometryNoise, carried, pose_errors
 from tapreach.estimation.step_knowledge import KNOWN, PLANAR, StepKnowledge
 from tapreach.geometry.finite import FloatArray
@@ -35,7 +35,7 @@ class SeenStep:
 
 @dataclass(frozen=True, eq=False)
 class CorrectedDrive:
-    """world_from_base of each stop, base_from_camera, and the errors left in the cameras' poses.
+    """world_from_base of each stop, base_from_camera, and the errors left in them.
 
     The first pose is exact. `errors` is what `estimate_point` takes as motion, with observations that have
     these poses and this mount.
@@ -43,7 +43,7 @@ class CorrectedDrive:
 
     poses: tuple[PlanarPose, ...]
     base_from_camera: RigidTransform
-    errors: CameraErrors
+    errors: PoseErrors
 
 
 def corrected_drive(
@@ -72,7 +72,7 @@ def corrected_drive(
         pose.compose(PlanarPose(*map(float, error))) for pose, error in zip(poses, moved, strict=True)
     )
     mount = perturbed(base_from_camera, by_mount @ mean[on_base:])
-    return CorrectedDrive(corrected, mount, _errors_left(by_base, by_mount, root, mount))
+    return CorrectedDrive(corrected, mount, _errors_left(by_base, by_mount, root))
 
 
 def _with_slips(by_base: FloatArray, poses: Sequence[PlanarPose], steps: Sequence[SeenStep]) -> FloatArray:
@@ -117,11 +117,8 @@ def _carried(start: PlanarPose, end: PlanarPose) -> FloatArray:
     return np.asarray(carried(np.array([[way.x, way.y, way.heading]]))[0])
 
 
-def _errors_left(
-    by_base: FloatArray, by_mount: FloatArray, root: FloatArray, mount: RigidTransform
-) -> CameraErrors:
-    count, on_base = len(by_base), by_base.shape[2]
-    in_space = np.zeros((count, 6, len(root)))
+def _errors_left(by_base: FloatArray, by_mount: FloatArray, root: FloatArray) -> PoseErrors:
+    on_base = by_base.shape[2]
+    in_space = np.zeros((len(by_base), 6, len(root)))
     in_space[:, _PLANAR_ROWS] = by_base @ root[:on_base]
-    of_mount = by_mount @ root[on_base:]
-    return CameraErrors(inverse_adjoint(mount) @ in_space + of_mount, of_mount)
+    return PoseErrors(in_space, by_mount @ root[on_base:])

@@ -1,19 +1,19 @@
-"""How the base turned since a key frame, by what stands still in the pictures."""
+"""How the base moved since a key frame, by what stands still in the pictures."""
 
-import math
 from math import radians
 
 from tapreach.estimation.camera_step import camera_step
 from tapreach.estimation.rotation_from_background import BackgroundStatus, rotation_from_background
+from tapreach.estimation.step_knowledge import NOTHING_SEEN
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
-from tapreach.tasks.sighting import SeenTurn, is_apart
+from tapreach.tasks.sighting import SeenWay, is_apart
 from tapreach.vision.background_motion import BackgroundQuality, BackgroundTracker
 from tapreach.vision.image_io import Gray
 
 _MOVED_DISTANCE, _MOVED_ANGLE = 0.004, radians(0.3)
-"""Below this the wheels know best that nothing turned."""
+"""Below this the wheels know best that nothing moved."""
 _THIN = 0.45
 """A new key frame is due when less than this share of the corners is left."""
 
@@ -30,7 +30,7 @@ class BackgroundWatch:
         self.renew(picture, frame_id, world_from_base)
 
     def renew(self, picture: Gray, frame_id: int, world_from_base: PlanarPose) -> None:
-        """Take this frame as the key: turns are counted from it."""
+        """Take this frame as the key: ways are counted from it."""
         self._tracker = BackgroundTracker(picture)
         self._key_id, self._key_pose = frame_id, world_from_base
 
@@ -43,8 +43,9 @@ class BackgroundWatch:
         """Carry on to the next picture."""
         self._tracker.follow(picture)
 
-    def turn_to(self, world_from_base: PlanarPose) -> SeenTurn | None:
-        """Return the turn from the key frame to the newest picture; None where the base has hardly moved.
+    def way_to(self, world_from_base: PlanarPose) -> SeenWay | None:
+        """Return what is seen of the way from the key frame to the newest picture; None where the base has
+        hardly moved.
 
         world_from_base: where the wheels say the newest picture was taken.
         """
@@ -52,10 +53,10 @@ class BackgroundWatch:
             return None
         pairs = self._tracker.pairs()
         if pairs.quality is BackgroundQuality.POOR:
-            return SeenTurn(self._key_id, 0.0, math.inf, pairs.reason)
+            return SeenWay(self._key_id, NOTHING_SEEN, pairs.reason)
         step = camera_step(
             self._key_pose.between(world_from_base), self._noise, self._mount, self._mount_noise
         )
         found = rotation_from_background(pairs.first, pairs.now, self._camera, step)
         reason = found.reason if found.status is BackgroundStatus.POOR else ""
-        return SeenTurn(self._key_id, found.excess_turn, found.turn_sd, reason)
+        return SeenWay(self._key_id, found.knowledge, reason)

@@ -43,13 +43,10 @@ def estimate(sightings: Sequence[Sighting], description: RobotDescription, with_
     say of its motion.
     """
     straight = straightened(sightings, description)
-    observations = [observation_of(sighting, description) for sighting in straight.sightings]
-    found = estimate_point(
-        observations,
-        straight.covariance,
-        mount_noise=mount_noise(description),
-        with_advice=with_advice,
-    )
+    observations = [
+        observation_of(sighting, description, straight.base_from_camera) for sighting in straight.sightings
+    ]
+    found = estimate_point(observations, straight.errors, with_advice=with_advice)
     values = {field.name: getattr(found, field.name) for field in fields(found)}
     values |= _hung_on(straight.sightings[-1].world_from_base, found)
     source = HeadingSource.BACKGROUND if not straight.reason else HeadingSource.WHEELS

@@ -3,7 +3,10 @@
 import math
 from dataclasses import dataclass
 
+from scipy.spatial.transform import RigidTransform
+
 from tapreach.estimation.observation import Observation
+from tapreach.estimation.step_knowledge import StepKnowledge
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
 from tapreach.geometry.ray import Ray
@@ -20,16 +23,14 @@ TAP_SIGMA = 0.3
 
 
 @dataclass(frozen=True, slots=True)
-class SeenTurn:
-    """How much further left the base turned [rad] from frame `since_id` on than the wheels said, by the
-    background.
+class SeenWay:
+    """What the background says of the base's way from frame `since_id` on, and of the camera's mount.
 
-    sd: one sigma [rad]; infinite where it was not seen, and `reason` then says why.
+    reason: why it says nothing; '' where it does.
     """
 
     since_id: int
-    excess: float
-    sd: float
+    knowledge: StepKnowledge
     reason: str = ""
 
 
@@ -37,8 +38,8 @@ class SeenTurn:
 class Sighting:
     """The target in one frame. sigma: one standard deviation of u and of v [px], motion included.
 
-    world_from_base: by the wheels. turn: what the background says of its heading, None where it was not
-    asked. is_key: later turns are counted from this frame.
+    world_from_base: by the wheels. way: what the background says of it, None where it was not asked.
+    is_key: later ways are counted from this frame.
     """
 
     frame_id: int
@@ -47,18 +48,21 @@ class Sighting:
     sigma: float
     scale: float
     world_from_base: PlanarPose
-    turn: SeenTurn | None = None
+    way: SeenWay | None = None
     is_key: bool = False
 
 
-def observation_of(sighting: Sighting, description: RobotDescription) -> Observation:
-    """Return it as the estimator wants it."""
+def observation_of(
+    sighting: Sighting, description: RobotDescription, base_from_camera: RigidTransform | None = None
+) -> Observation:
+    """Return it as the estimator wants it; base_from_camera: where known better than by the robot's file."""
+    mount = description.camera.mount.base_from_camera() if base_from_camera is None else base_from_camera
     return Observation(
         sighting.pixel,
         sighting.sigma,
         description.camera.model(),
         sighting.world_from_base.to_rigid(),
-        description.camera.mount.base_from_camera(),
+        mount,
     )
 
 

@@ -1,61 +1,71 @@
-"""The poses of sightings with what the background says of their headings."""
+"""The poses of sightings, and the camera's mount, with what the background says of the robot's way."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
-from tapreach.estimation.measured_turn import MeasuredTurn, with_measured_turns
-from tapreach.geometry.finite import FloatArray
+from tapreach.estimation.corrected_drive import SeenStep, corrected_drive
+from tapreach.estimation.motion_prior import PoseErrors
 from tapreach.robot.config import RobotDescription
-from tapreach.tasks.robot_noise import odometry_noise
+from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Sighting
 
-_HELPS = 0.5
+_HELPS = 0.7
 """The background helps where it brings the error of a heading below this share of the wheels' own."""
 _NOT_ASKED = "the background was not looked at"
+_SAYS_LITTLE = "the background shows the turn no better than the wheels"
 
 
 @dataclass(frozen=True, eq=False)
 class Straightened:
     """sightings: their poses as now known, hung on the newest one, which stays as the wheels say.
 
-    covariance: joint, of all poses (6n, 6n) against the first, as `estimate_point` takes it. reason: why the
-    background does not help; '' where it does.
+    base_from_camera: as now known. errors: what is left, against the first pose, as `estimate_point` takes
+    it. reason: why the background does not help; '' where it does.
     """
 
     sightings: tuple[Sighting, ...]
-    covariance: FloatArray
+    base_from_camera: RigidTransform
+    errors: PoseErrors
     reason: str
 
 
 def straightened(sightings: Sequence[Sighting], description: RobotDescription) -> Straightened:
-    """Return sightings, in the order of time, with poses corrected by the turns seen between them."""
+    """Return sightings, in the order of time, with poses corrected by what was seen of the way."""
     poses = [sighting.world_from_base for sighting in sightings]
-    turns = _measured(sightings)
-    noise = odometry_noise(description)
-    by_wheels = with_measured_turns(poses, noise, [])
-    corrected = with_measured_turns(poses, noise, turns)
+    known = odometry_noise(description), description.camera.mount.base_from_camera(), mount_noise(description)
+    steps = _seen_steps(sightings)
+    corrected = corrected_drive(poses, *known, steps)
     carry = poses[-1].compose(corrected.poses[-1].inverse())
     straight = tuple(
         replace(sighting, world_from_base=carry.compose(pose))
         for sighting, pose in zip(sightings, corrected.poses, strict=True)
     )
-    heading_sd = [math.sqrt(max(0.0, each.covariance[-1, -1])) for each in (by_wheels, corrected)]
-    helps = bool(turns) and heading_sd[1] <= _HELPS * heading_sd[0]
-    return Straightened(straight, np.asarray(corrected.covariance), "" if helps else _why_not(sightings))
+    by_wheels = corrected_drive(poses, *known, []).errors
+    helps = bool(steps) and _heading_sd(corrected.errors) <= _HELPS * _heading_sd(by_wheels)
+    reason = "" if helps else _why_not(sightings)
+    return Straightened(straight, corrected.base_from_camera, corrected.errors, reason)
 
 
-def _measured(sightings: Sequence[Sighting]) -> list[MeasuredTurn]:
+def _heading_sd(errors: PoseErrors) -> float:
+    return float(np.linalg.norm(errors.by_base[-1, 5]))
+
+
+def _seen_steps(sightings: Sequence[Sighting]) -> list[SeenStep]:
+    """Return from each key the longest way seen: shorter ones share its errors and say nothing more."""
     number = {sighting.frame_id: i for i, sighting in enumerate(sightings)}
-    return [
-        MeasuredTurn(number[turn.since_id], i, turn.excess, turn.sd)
-        for i, sighting in enumerate(sightings)
-        if (turn := sighting.turn) is not None and math.isfinite(turn.sd) and turn.since_id in number
-    ]
+    longest: dict[int, SeenStep] = {}
+    for i, sighting in enumerate(sightings):
+        way = sighting.way
+        if way is not None and not way.reason and way.since_id in number:
+            longest[way.since_id] = SeenStep(number[way.since_id], i, way.knowledge)
+    return list(longest.values())
 
 
 def _why_not(sightings: Sequence[Sighting]) -> str:
-    reasons = [each.turn.reason for each in sightings if each.turn is not None and each.turn.reason]
-    return reasons[-1] if reasons else _NOT_ASKED
+    ways = [each.way for each in sightings if each.way is not None]
+    if not ways:
+        return _NOT_ASKED
+    return next((way.reason for way in reversed(ways) if way.reason), _SAYS_LITTLE)

@@ -11,15 +11,15 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.background_watch import BackgroundWatch
 from tapreach.tasks.guessing import DISTANCES, guesses_for
-from tapreach.tasks.sighting import TAP_SIGMA, SeenTurn, Sighting, is_apart, ray_of
+from tapreach.tasks.sighting import TAP_SIGMA, SeenWay, Sighting, is_apart, ray_of
 from tapreach.vision.image_io import Gray
 from tapreach.vision.track import Track, TrackStatus
 from tapreach.vision.tracker import PatchTracker
 
 UNSURE_FACTOR = 2.0
 """An unsure pixel counts with this many times its sigma."""
-_TURN_DISTANCE, _TURN_ANGLE = 0.03, radians(3.0)
-"""On the way the turn is measured this often."""
+_WAY_DISTANCE, _WAY_ANGLE = 0.03, radians(3.0)
+"""While the robot moves its way is measured this often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Followed:
 class TargetWatch:
     """One tapped place. The first picture is the tapped one.
 
-    uses_background: False leaves all turns to the wheels. Raises InputError for a pixel outside the picture.
+    uses_background: False leaves the way to the wheels. Raises InputError for a pixel outside the picture.
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class TargetWatch:
     def follow(self, picture: Gray, shot: Shot, point_in_world: FloatArray | None, is_stop: bool) -> Followed:
         """Return what the next picture shows.
 
-        point_in_world: (3,) where the target is, as far as known. is_stop: measure the turn, and take this
+        point_in_world: (3,) where the target is, as far as known. is_stop: measure the way, and take this
         frame as the next key. Raises InputError for a picture of another size.
         """
         distances = DISTANCES if point_in_world is None else (self._distance_to(point_in_world),)
@@ -92,25 +92,25 @@ class TargetWatch:
         seen = Sighting(
             shot.frame_id, shot.captured_ns, track.pixel, sigma, track.scale, shot.world_from_base
         )
-        self.last = self._with_turn(seen, picture, is_stop)
+        self.last = self._with_way(seen, picture, is_stop)
         return Followed(self.last, loss)
 
     def _distance_to(self, point_in_world: FloatArray) -> float:
         return float(np.linalg.norm(point_in_world - ray_of(self.last, self._description).origin))
 
-    def _with_turn(self, seen: Sighting, picture: Gray, is_stop: bool) -> Sighting:
+    def _with_way(self, seen: Sighting, picture: Gray, is_stop: bool) -> Sighting:
         """Return the sighting with what the background says of it, which may make it the next key."""
         if self._background is None:
             return seen
-        is_due = is_apart(self._measured_at, seen.world_from_base, _TURN_DISTANCE, _TURN_ANGLE)
+        is_due = is_apart(self._measured_at, seen.world_from_base, _WAY_DISTANCE, _WAY_ANGLE)
         if not (is_stop or is_due or self._background.is_thin):
             return seen
-        turn: SeenTurn | None = self._background.turn_to(seen.world_from_base)
+        way: SeenWay | None = self._background.way_to(seen.world_from_base)
         self._measured_at = seen.world_from_base
         is_key = is_stop or self._background.is_thin
         if is_key:
             self._background.renew(picture, seen.frame_id, seen.world_from_base)
-        return replace(seen, turn=turn, is_key=is_key)
+        return replace(seen, way=way, is_key=is_key)
 
 
 def _sigma_of(track: Track) -> float:
