@@ -1,51 +1,56 @@
 """Views that do not fit the others: found by how much the cost falls without them (docs/estimation.md, 8)."""
 
+import math
+
 import numpy as np
 
 from tapreach.estimation.map_solver import Solution, solve
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
-from tapreach.geometry.gaussian import chi2_limit
 
 _FALSE_ALARMS = 0.01
 _FEWEST_TO_BLAME = 4  # of three views, any two agree well enough without the third
+_SLIP = 5.0  # one sigma of a slip, in sigmas of a tap: how likely each view is to show one is judged by this
+_EQUALLY_SUSPECT = 2.0 * math.log(10.0)  # odds below ten to one do not tell which of two views slipped
 _TRIED = 3
 _HOPE = 0.8  # share of the limit that the linear prediction must promise before a view is tried without
 
 
 def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | None:
-    """Return the model with unfitting views left out, one by one, and its solution.
+    """Return the model with unfitting views left out and its solution.
 
-    A view is left out where the cost falls beyond chance without it: the best of n is tested at 1 % false
-    alarms in all. Three are always kept. None where no depth puts the target before all cameras.
+    A view is left out where the cost falls beyond chance without it, 1 % false alarms in all, split between
+    the views as equation (8b) says; the one that is nearly as likely to be the culprit goes with it. Three
+    are always kept. None where no depth puts the target before all cameras.
     """
     solution = solve(model)
-    while solution is not None and int(model.is_used.sum()) >= _FEWEST_TO_BLAME:
-        limit = chi2_limit(1.0 - _FALSE_ALARMS / int(model.is_used.sum()), 2)
-        better = _best_without_one(model, solution, _HOPE * limit)
-        if better is None or solution.cost - better[1].cost < limit:
+    while solution is not None and (spare := int(model.is_used.sum()) - _FEWEST_TO_BLAME + 1) > 0:
+        suspects = _suspects(model, solution)[: min(spare, 2)]
+        if not suspects:
             break
-        model, solution = better
+        for view in suspects:
+            model = model.without(view)
+        solution = solve(model)
     return None if solution is None else (model, solution)
 
 
-def _best_without_one(
-    model: ViewModel, solution: Solution, hoped: float
-) -> tuple[ViewModel, Solution] | None:
-    expected = _expected_gains(solution, model.whitening)
-    best: tuple[ViewModel, Solution] | None = None
-    for view in np.argsort(expected)[::-1][:_TRIED]:
-        if expected[view] < hoped:
-            break
-        reduced = model.without(int(view))
-        found = solve(reduced)
-        if found is not None and (best is None or found.cost < best[1].cost):
-            best = reduced, found
-    return best
+def _suspects(model: ViewModel, solution: Solution) -> list[int]:
+    """Return the views without which the cost falls beyond chance, most likely first, of like odds only."""
+    expected, limits = _gains_and_limits(model, solution)
+    excess: dict[int, float] = {}
+    for view in np.argsort(limits - expected)[:_TRIED].tolist():
+        if expected[view] < _HOPE * limits[view]:
+            continue
+        found = solve(model.without(view))
+        if found is not None and solution.cost - found.cost >= limits[view]:
+            excess[view] = solution.cost - found.cost - limits[view]
+    least = max(excess.values(), default=0.0) - _EQUALLY_SUSPECT
+    return sorted((view for view in excess if excess[view] >= least), key=lambda view: -excess[view])
 
 
-def _expected_gains(solution: Solution, whitening: FloatArray | None) -> FloatArray:
-    """Return (n,): the linear prediction of how much the cost falls without each view.
+def _gains_and_limits(model: ViewModel, solution: Solution) -> tuple[FloatArray, FloatArray]:
+    """Return (n,) each: the linear prediction (8a) of how much the cost falls without each view, and by how
+    much it must fall, (8b).
 
     I − P = C⁻¹ − C⁻¹ Jt S⁻¹ Jtᵀ C⁻¹, of which the diagonal blocks are needed.
     """
@@ -55,10 +60,16 @@ def _expected_gains(solution: Solution, whitening: FloatArray | None) -> FloatAr
     pull = precision @ views.by_target[0]
     damped = solution.on_target + 1e-12 * np.diag(np.diag(views.by_target[0].T @ views.by_target[0]))
     remaining = precision - pull @ np.linalg.solve(damped, pull.T)
-    if whitening is not None:  # a slip shifts one tap, and so what is expected of the next
-        remaining, residuals = whitening.T @ remaining @ whitening, whitening.T @ residuals
-    remaining = remaining.reshape(-1, 2, len(residuals) // 2, 2)
-    every = np.arange(len(remaining))
-    blocks = remaining[every, :, every] + 1e-9 * np.eye(2)
-    pairs = residuals.reshape(-1, 2)
-    return np.asarray(np.sum(pairs * np.linalg.solve(blocks, pairs[:, :, None])[:, :, 0], axis=1))
+    if model.whitening is not None:  # a slip shifts one tap, and so what is expected of the next
+        remaining = model.whitening.T @ remaining @ model.whitening
+        residuals = model.whitening.T @ residuals
+    every = np.arange(model.views)
+    blocks = remaining.reshape(model.views, 2, model.views, 2)[every, :, every]
+    uu, uv, vv = blocks[:, 0, 0] + 1e-9, blocks[:, 0, 1], blocks[:, 1, 1] + 1e-9
+    u, v = residuals[0::2], residuals[1::2]
+    gains = (vv * u * u - 2.0 * uv * u * v + uu * v * v) / (uu * vv - uv * uv)
+    seen = _SLIP**-2
+    shares = model.is_used / np.sqrt((uu + seen) * (vv + seen) - uv * uv)
+    with np.errstate(divide="ignore"):
+        limits = -2.0 * np.log(_FALSE_ALARMS * shares / np.sum(shares))
+    return np.where(model.is_used, gains, 0.0), limits
