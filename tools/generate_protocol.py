@@ -1,4 +1,5 @@
-"""Write web/net/messages.js and the tables of docs/protocol.md from src/tapreach/server/messages.py.
+"""Write web/net/messages.js and the tables of docs/protocol.md from src/tapreach/server/messages.py
+and message_parts.py.
 
     .venv/bin/python tools/generate_protocol.py
 
@@ -13,7 +14,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from tapreach.server import messages
+from tapreach.server import message_parts, messages
 
 ROOT = Path(__file__).resolve().parents[1]
 JS = ROOT / "web" / "net" / "messages.js"
@@ -44,13 +45,9 @@ FROM_SERVER = models_of(messages.FromServer)
 
 def parts() -> list[type[BaseModel]]:
     """Return the models that stand inside messages, in the order of the source."""
-    named = [value for value in vars(messages).values() if inspect.isclass(value)]
-    bases = {messages.Message, messages.Request, messages.Timed}
-    return [
-        value
-        for value in named
-        if issubclass(value, messages.Message) and value not in bases | set(FROM_PAGE) | set(FROM_SERVER)
-    ]
+    named = [value for value in vars(message_parts).values() if inspect.isclass(value)]
+    bases = {message_parts.Message}
+    return [value for value in named if issubclass(value, message_parts.Message) and value not in bases]
 
 
 def js_type(schema: Schema) -> str:

@@ -27,6 +27,7 @@ import { TaskPanel } from "./ui/task_panel.js";
 import { Toast } from "./ui/toast.js";
 import { Veil } from "./ui/veil.js";
 import { deviceName } from "./net/device_name.js";
+import { Boxes } from "./view/boxes.js";
 import { Freshness } from "./view/freshness.js";
 import { Overlay } from "./view/overlay.js";
 import { Picture } from "./view/picture.js";
@@ -49,6 +50,7 @@ const playback = new Playback(picture, (frameId) => video.acknowledge(frameId));
 const freshness = new Freshness(situation, clock);
 const targets = new Targets();
 const overlay = new Overlay(targets);
+const boxes = new Boxes(targets);
 const plan = new Plan(byId("plan"));
 
 const drive = new Drive(control, situation);
@@ -65,7 +67,7 @@ const taskPanel = new TaskPanel(control, toast);
 const stepMenu = new StepMenu(arm, popovers);
 const pads = new Pads(drive, arm, situation);
 const purpose = new Purpose();
-const aim = new Aim({ socket: control, guide, purpose, overlay, playback, toast });
+const aim = new Aim({ socket: control, guide, purpose, overlay, boxes, playback, toast });
 new StatusBar(situation);
 new TargetCard(control, targets);
 new PlaybackBar(playback);
@@ -123,7 +125,9 @@ function joinControl() {
 }
 
 function joinPicture() {
-  picture.painters.push((ctx, placement, frame) => overlay.paint(ctx, placement, frame));
+  for (const layer of [boxes, overlay]) {
+    picture.painters.push((ctx, placement, frame) => layer.paint(ctx, placement, frame));
+  }
   on(video, "frame", (/** @type {import("./net/video_message.js").Frame} */ frame) => playback.receive(frame));
   on(video, "broken", (/** @type {string} */ reason) => toast.tell(reason, "bad"));
   on(video, "link", () => playback.forgetOwed());
@@ -136,6 +140,13 @@ function joinPicture() {
   on(tap, "tap", (/** @type {import("./view/picture.js").PicturePoint} */ point) => {
     hints.done("tap");
     void aim.at(point);
+  });
+  tap.allowsBox = () => !guide.wantsTap;
+  on(tap, "drawing", (/** @type {import("./view/boxes.js").PictureBox | null} */ box) => aim.draw(box));
+  on(tap, "refused", (/** @type {string} */ reason) => toast.tell(reason));
+  on(tap, "box", (/** @type {import("./input/tap.js").BoxedPart} */ box) => {
+    hints.done("tap");
+    void aim.around(box);
   });
 }
 

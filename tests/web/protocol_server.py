@@ -68,6 +68,7 @@ class ProtocolServer:
         self.background = room(*size)
         self.state = first_state()
         self.markers: list[object] = []
+        self.base = (0.0, 0.0, 0.0)
         self.sends_frames = True
         self.refuses = False
         self.silent_session = 0
@@ -278,7 +279,7 @@ class ProtocolServer:
         jpeg = stamped_jpeg(self.background, frame_id)
         height, width = self.background.shape[:2]
         captured_ns = time.monotonic_ns() - self.capture_delay_ns
-        return video_message(frame_id, captured_ns, jpeg, (width, height), self.markers)
+        return video_message(frame_id, captured_ns, jpeg, (width, height), self.markers, self.base)
 
     async def _list_captures(self, _: Request) -> Response:
         if self.refuses:

@@ -40,9 +40,14 @@ def stamped_jpeg(background: Image, frame_id: int) -> bytes:
 
 
 def video_message(
-    frame_id: int, captured_ns: int, jpeg: bytes, size: tuple[int, int], markers: list[object]
+    frame_id: int,
+    captured_ns: int,
+    jpeg: bytes,
+    size: tuple[int, int],
+    markers: list[object],
+    base: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> bytes:
     """Return a message of the video socket."""
-    meta = json.dumps({"base": [0.0, 0.0, 0.0], "markers": markers}).encode()
+    meta = json.dumps({"base": base, "markers": markers}).encode()
     header = HEADER.pack(b"TRV1", frame_id, captured_ns, captured_ns, size[0], size[1], len(meta))
     return header + meta + jpeg

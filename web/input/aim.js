@@ -1,13 +1,15 @@
 /**
- * Turns a tap into the message it means now: for the guide's step, a floor guess, or Locate.
+ * Turns a tap or a drawn box into the message it means now: for the guide's step, a floor guess, or Locate.
  *
  * @typedef {import("../view/picture.js").PicturePoint} PicturePoint
+ * @typedef {import("./tap.js").BoxedPart} BoxedPart
  */
 export class Aim {
   /**
    * @param {{socket: import("../net/control_socket.js").ControlSocket, guide: import("../ui/guide.js").Guide,
    *   purpose: import("../ui/purpose.js").Purpose, overlay: import("../view/overlay.js").Overlay,
-   *   playback: import("../view/playback.js").Playback, toast: import("../ui/toast.js").Toast}} parts
+   *   boxes: import("../view/boxes.js").Boxes, playback: import("../view/playback.js").Playback,
+   *   toast: import("../ui/toast.js").Toast}} parts
    */
   constructor(parts) {
     this.parts = parts;
@@ -15,11 +17,27 @@ export class Aim {
 
   /** @param {PicturePoint} point */
   async at(point) {
-    const { socket, overlay, playback, toast } = this.parts;
-    const message = this.message(point);
+    const { overlay } = this.parts;
     this.mark(point);
-    const ack = await socket.send(message);
+    await this.send(this.message(point));
     if (overlay.pendingTap === point) this.mark(null);
+  }
+
+  /** @param {BoxedPart} box */
+  async around(box) {
+    const { boxes, purpose } = this.parts;
+    const { frameId, left, top, right, bottom } = box;
+    this.draw({ ...box, isEnough: true, isSent: true });
+    const { pending } = boxes;
+    const middle = { u: (left + right) / 2, v: (top + bottom) / 2 };
+    await this.send({ type: "tap", frame_id: frameId, ...middle, purpose: purpose.chosen, box: [left, top, right, bottom] });
+    if (boxes.pending === pending) this.draw(null);
+  }
+
+  /** @param {import("../net/control_socket.js").Unnumbered} message */
+  async send(message) {
+    const { socket, playback, toast } = this.parts;
+    const ack = await socket.send(message);
     if (!ack.ok) toast.tell(ack.reason, "bad");
     // The robot moves now: its operator must see where.
     else if (message.type === "tap" && message.purpose === "locate") playback.live();
@@ -35,6 +53,12 @@ export class Aim {
   /** @param {PicturePoint | null} point */
   mark(point) {
     this.parts.overlay.pendingTap = point;
+    this.parts.playback.picture.repaint();
+  }
+
+  /** @param {import("../view/boxes.js").PictureBox | null} box that is being drawn, or waits for its answer */
+  draw(box) {
+    this.parts.boxes.pending = box;
     this.parts.playback.picture.repaint();
   }
 }

@@ -141,7 +141,7 @@ export const PROTOCOL_VERSION = 1;
  */
 
 /**
- * A tap on the picture. 'floor': at once, from one view; 'locate': the robot moves to find out.
+ * A tap on the picture, or a box drawn around a thing, which gives its size as well. 'floor': at once, from one view; 'locate': the robot moves to find out.
  *
  * @typedef {object} TapTarget
  * @property {number} seq
@@ -150,6 +150,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {number} u column, centre of the left-most pixel is 0 [px]
  * @property {number} v row, centre of the top-most pixel is 0 [px]
  * @property {"locate" | "floor"} purpose
+ * @property {[number, number, number, number] | null} [box] left, top, right, bottom [px]; u and v are then its middle
  */
 
 /**
@@ -306,6 +307,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {[number, number][]} region_in_world outline of the 95 % region on the floor
  * @property {[number, number, number, number][]} rays_in_world x, y, direction x, y
  * @property {boolean} is_following
+ * @property {ExtentView | null} extent null: not asked for, or no position yet
  */
 
 /**
@@ -397,4 +399,16 @@ export const PROTOCOL_VERSION = 1;
  * @property {boolean} is_idle
  * @property {number | null} asked_by_id
  * @property {string} asked_by_name
+ */
+
+/**
+ * How large a target is, in the upright plane through it that faces the camera [m]; null: not known.
+ *
+ * @typedef {object} ExtentView
+ * @property {"box" | "outline"} source the operator's box, or guessed from the picture
+ * @property {number | null} width
+ * @property {number | null} height
+ * @property {number | null} width_sigma one sigma, of the width
+ * @property {number | null} height_sigma one sigma, of the height
+ * @property {string} reason why there is no size, or what to know of it
  */

@@ -2,7 +2,7 @@
  * A picture on the wire: header (little-endian `<4sIQQHHI`), meta as JSON, JPEG.
  *
  * @typedef {{target_id: number, u: number, v: number, inside: boolean, region: [number, number][],
- *   state: "followed" | "predicted"}} Marker
+ *   box?: [number, number][], state: "followed" | "predicted"}} Marker `box`: corners of the thing's size, or none
  * @typedef {{base: [number, number, number] | null, markers: Marker[]}} FrameMeta `base`: x, y [m], heading [rad]
  * @typedef {{frameId: number, capturedMs: number, sentMs: number, receivedMs: number, width: number,
  *   height: number, meta: FrameMeta, jpeg: Blob}} Frame `captured` and `sent` on the server's clock

@@ -39,6 +39,23 @@ export function pictureFromBox(placement, x, y) {
 }
 
 /**
+ * The picture point nearest to a point of the screen, which may lie beside the picture.
+ *
+ * @param {import("./picture.js").Picture} picture
+ * @param {number} clientX
+ * @param {number} clientY
+ * @returns {{u: number, v: number} | null} null while nothing is painted
+ */
+export function nearestInPicture(picture, clientX, clientY) {
+  const placement = picture.placement();
+  if (!placement) return null;
+  const box = picture.canvas.getBoundingClientRect();
+  const x = Math.min(Math.max(clientX - box.left, placement.left), placement.left + placement.width);
+  const y = Math.min(Math.max(clientY - box.top, placement.top), placement.top + placement.height);
+  return { u: (x - placement.left) / placement.scale - 0.5, v: (y - placement.top) / placement.scale - 0.5 };
+}
+
+/**
  * @param {Placement} placement
  * @param {number} u
  * @param {number} v

@@ -126,6 +126,11 @@ export class Picture extends EventTarget {
     return placePicture(box.width, box.height, width, height);
   }
 
+  /** @returns {[number, number, number] | null} where the robot was in the painted frame: x, y [m], heading [rad] */
+  get base() {
+    return this.painted?.frame.meta?.base ?? null;
+  }
+
   /**
    * @param {number} clientX
    * @param {number} clientY

@@ -30,23 +30,31 @@ _ON_SPHERE = _great_circles()
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A target's position and the surface of its 95 % region, in the world: (1 + n, 3)."""
+    """A target's position, the corners of its box, and the surface of its 95 % region, in the world.
+
+    points_in_world: (1 + corners + n, 3); corners: 4, or 0 where no size is known.
+    """
 
     target_id: int
     points_in_world: FloatArray
     state: str
+    corners: int = 0
 
     @classmethod
     def of(cls, target: Target) -> "Mark | None":
         """Return what is to be drawn of a target; None while it has no position."""
         if target.point_in_world is None:
             return None
-        points = target.point_in_world[None, :]
+        parts = [target.point_in_world[None, :]]
+        size = target.extent.size if target.extent is not None else None
+        if size is not None:
+            parts.append(size.corners_in_world)
         if target.point_cov_in_world is not None:
             region = confidence_ellipse(target.point_cov_in_world)
             surface = (_ON_SPHERE * region.half_axes) @ region.directions.T
-            points = np.concatenate([points, target.point_in_world + surface])
-        return cls(target.target_id, points, "followed" if target.is_following else "predicted")
+            parts.append(target.point_in_world + surface)
+        state = "followed" if target.is_following else "predicted"
+        return cls(target.target_id, np.concatenate(parts), state, 4 if size is not None else 0)
 
 
 class MarkerProjection:
@@ -74,9 +82,10 @@ class MarkerProjection:
             end = start + len(mark.points_in_world)
             # Behind the camera there is nowhere to draw it.
             if projection.is_valid[start]:
-                is_valid = projection.is_valid[start + 1 : end]
-                outline = _hull(projection.pixels[start + 1 : end][is_valid])
-                markers.append(_marker(mark, projection, start, outline))
+                region = slice(start + 1 + mark.corners, end)
+                outline = _hull(projection.pixels[region][projection.is_valid[region]])
+                box = _box(projection, slice(start + 1, start + 1 + mark.corners))
+                markers.append(_marker(mark, projection, start, outline) | {"box": box})
             start = end
         return markers
 
@@ -91,6 +100,13 @@ def _marker(mark: Mark, projection: Projection, row: int, region: list[list[floa
         "region": region,
         "state": mark.state,
     }
+
+
+def _box(projection: Projection, rows: slice) -> list[list[float]]:
+    """Return the corners; none where one of them is behind the camera."""
+    if not np.all(projection.is_valid[rows]):
+        return []
+    return [[round(float(u), 1), round(float(v), 1)] for u, v in projection.pixels[rows]]
 
 
 def _hull(pixels: FloatArray) -> list[list[float]]:

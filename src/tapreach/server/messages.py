@@ -7,19 +7,23 @@ with that number.
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
+
+from tapreach.server.message_parts import (
+    ArmView,
+    CameraView,
+    ExtentView,
+    LeaseView,
+    Message,
+    OdometryView,
+    TwistView,
+)
 
 PROTOCOL_VERSION = 1
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 FrameId = Annotated[int, Field(ge=1)]
 ArmControl = Literal["T", "R", "left", "right", "forward", "backward"]
 GuideKind = Literal["two_tap", "rotation_centre"]
-
-
-class Message(BaseModel):
-    """Base of all messages: unknown keys are errors."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Request(Message):
@@ -125,13 +129,18 @@ class LeaseAnswer(Request):
 
 
 class TapTarget(Request):
-    """A tap on the picture. 'floor': at once, from one view; 'locate': the robot moves to find out."""
+    """A tap on the picture, or a box drawn around a thing, which gives its size as well.
+
+    'floor': at once, from one view; 'locate': the robot moves to find out."""
 
     type: Literal["tap"]
     frame_id: FrameId
     u: Finite = Field(description="column, centre of the left-most pixel is 0 [px]")
     v: Finite = Field(description="row, centre of the top-most pixel is 0 [px]")
     purpose: Literal["locate", "floor"]
+    box: tuple[Finite, Finite, Finite, Finite] | None = Field(
+        None, description="left, top, right, bottom [px]; u and v are then its middle"
+    )
 
 
 class TargetClear(Request):
@@ -212,26 +221,6 @@ FromPage = Annotated[
 from_page: TypeAdapter[FromPage] = TypeAdapter(FromPage)
 
 
-class TwistView(Message):
-    """Speeds [m/s], [rad/s]."""
-
-    linear: float
-    angular: float
-
-
-class CameraView(Message):
-    """Lens and mount, for drawing."""
-
-    width: int
-    height: int
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    pitch_deg: float
-    rate_hz: float
-
-
 class Welcome(Message):
     """Answer to hello."""
 
@@ -265,37 +254,6 @@ class Ack(Message):
     ok: bool
     reason: str = ""
     sent: TwistView | None = None
-
-
-class OdometryView(Message):
-    """Odometry in the world frame."""
-
-    x: float
-    y: float
-    heading_deg: float
-    distance: float
-    linear: float
-    angular: float
-
-
-class ArmView(Message):
-    """Servo angles as a person reads them."""
-
-    rotation_deg: float
-    shoulder_deg: float
-    elbow_deg: float
-    claw_mm: float
-    is_moving: bool
-
-
-class LeaseView(Message):
-    """Who drives."""
-
-    holder_id: int | None
-    holder_name: str
-    is_idle: bool
-    asked_by_id: int | None
-    asked_by_name: str
 
 
 class State(Message):
@@ -349,6 +307,7 @@ class TargetView(Message):
     )
     rays_in_world: tuple[tuple[float, float, float, float], ...] = Field(description="x, y, direction x, y")
     is_following: bool
+    extent: ExtentView | None = Field(None, description="null: not asked for, or no position yet")
 
 
 class TargetGone(Message):

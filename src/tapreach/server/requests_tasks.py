@@ -1,6 +1,7 @@
 """Requests about targets, tasks and guides; only who drives may make them."""
 
 from tapreach.errors import InputError
+from tapreach.geometry.pixel_box import PixelBox
 from tapreach.server.messages import (
     Ack,
     GuideAct,
@@ -26,8 +27,9 @@ class TaskRequests:
 
     async def tap(self, visitor: Visitor, request: TapTarget) -> Ack:
         """Locate what was tapped, or guess where it stands on the floor."""
-        tap = Tap(request.frame_id, request.u, request.v)
         self._require_lease(visitor)
+        box = PixelBox(*request.box) if request.box is not None else None
+        tap = Tap(request.frame_id, request.u, request.v, box)
         if request.purpose == "floor":
             await self._station.tasks.guess_on_floor(tap)
         else:

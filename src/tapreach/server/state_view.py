@@ -2,7 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from tapreach.server.messages import LeaseView, State
+from tapreach.server.message_parts import LeaseView
+from tapreach.server.messages import State
 from tapreach.server.views import arm_view, odometry_view, twist_view
 
 if TYPE_CHECKING:

@@ -132,7 +132,9 @@ class TaskDesk:
 
     def _require_tap(self, tap: Tap) -> None:
         frame = self._station.frames.get(tap.frame_id)
-        require_inside(Pixel(tap.u, tap.v), frame.size)
+        place = require_inside(Pixel(tap.u, tap.v), frame.size)
+        if tap.box is not None and not tap.box.within(frame.size).holds(place):
+            raise InputError(f"the tap ({tap.u:.1f}, {tap.v:.1f}) lies outside its own box; give its middle")
 
     async def _next_frame(self, frame_id: int) -> Frame:
         clock = self._station.clock

@@ -10,7 +10,9 @@ from tapreach.geometry.gaussian import confidence_ellipse
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import CameraSection
 from tapreach.robot.messages import ArmState, Odometry, Twist
-from tapreach.server.messages import ArmView, CameraView, OdometryView, TargetView, TwistView
+from tapreach.server.message_parts import ArmView, CameraView, ExtentView, OdometryView, TwistView
+from tapreach.server.messages import TargetView
+from tapreach.tasks.extent import Extent
 from tapreach.tasks.target import Target
 
 OUTLINE_POINTS = 32
@@ -78,7 +80,21 @@ def target_view(target: Target, world_from_base: PlanarPose) -> TargetView:
             (*map(float, ray.origin[:2]), *map(float, ray.direction[:2])) for ray in target.rays_in_world
         ),
         is_following=target.is_following,
+        extent=extent_view(target.extent) if target.extent is not None else None,
         **_position(target, world_from_base),
+    )
+
+
+def extent_view(extent: Extent) -> ExtentView:
+    """Return a size for the page."""
+    size = extent.size
+    return ExtentView(
+        source=extent.source.value,
+        width=size.width if size is not None else None,
+        height=size.height if size is not None else None,
+        width_sigma=size.width_sd if size is not None else None,
+        height_sigma=size.height_sd if size is not None else None,
+        reason=extent.reason,
     )
 
 

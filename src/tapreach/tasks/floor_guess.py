@@ -1,6 +1,7 @@
 """Instant position of something that stands on the floor: one tap, one view, no motion."""
 
 import math
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from tapreach.estimation import floor_guess as on_floor
 from tapreach.geometry.pixel import Pixel, require_inside
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.extent import ExtentSource, Outline, measured
 from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.target import Target, TargetSource
@@ -20,12 +22,21 @@ _SURE = 1.96
 
 
 async def floor_guess(context: TaskContext, tap: Tap, target_id: int) -> Target:
-    """Return where the tapped place is if it is on the floor. Raises FrameError, PoseError, InputError."""
+    """Return where the tapped place is if it is on the floor: of a box, the middle of its lower edge.
+
+    Raises FrameError, PoseError, InputError.
+    """
     frame = context.frames.get(tap.frame_id)
-    pixel = require_inside(Pixel(tap.u, tap.v), frame.size)
+    box = tap.box.within(frame.size) if tap.box is not None else None
+    pixel = require_inside(Pixel(tap.u, tap.v), frame.size) if box is None else box.foot
     world_from_base = await pose_at(context, frame.captured_ns)
     sighting = Sighting(frame.frame_id, frame.captured_ns, pixel, TAP_SIGMA, 1.0, world_from_base)
-    return target_on_floor(sighting, target_id, context.description)
+    target = target_on_floor(sighting, target_id, context.description)
+    if box is None or target.point_in_world is None or target.point_cov_in_world is None:
+        return target
+    outline = Outline(ExtentSource.BOX, box)
+    size = measured(outline, sighting, target.point_in_world, target.point_cov_in_world, context.description)
+    return replace(target, extent=size)
 
 
 def guess_of(sighting: Sighting, description: RobotDescription) -> on_floor.FloorGuess:

@@ -7,6 +7,7 @@ from typing import Any
 from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.clock import MS
+from tapreach.tasks.aiming import aimed
 from tapreach.tasks.estimating import estimate
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.move_choice import Choice, choose_move
@@ -41,8 +42,9 @@ class LocateTask:
 
     async def run(self, context: TaskContext) -> str:
         """See Task. Raises FrameError, InputError, TargetLost, MotionInterrupted, LinkLost."""
-        follower = Follower(context, self._tap, key=self._target_id, uses_background=self._use_background)
-        report = TargetReport(self._target_id, TargetSource.LOCATE, self._tap, context.description)
+        tap = await aimed(context, self._tap)
+        follower = Follower(context, tap, key=self._target_id, uses_background=self._use_background)
+        report = TargetReport(self._target_id, TargetSource.LOCATE, tap, context.description)
         try:
             return await _Locating(context, follower, report).run()
         finally:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tapreach.geometry.ray import Ray
+from tapreach.tasks.extent import Extent
 
 
 class TargetSource(StrEnum):
@@ -42,3 +43,5 @@ class Target:
     """Lines of sight used, for the plan view."""
     is_following: bool = False
     """True while the tracker has it in the picture."""
+    extent: Extent | None = None
+    """How large it is; None where nobody has asked, or before there is a position."""

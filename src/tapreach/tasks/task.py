@@ -7,6 +7,7 @@ from typing import Protocol, TypeVar
 
 from tapreach.control.pilot import Pilot
 from tapreach.estimation.pose_history import PoseHistory
+from tapreach.geometry.pixel_box import PixelBox
 from tapreach.robot.clock import Clock
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.frame_store import FrameStore
@@ -19,11 +20,20 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Tap:
-    """A touched pixel of the frame that was on the screen."""
+    """A touched pixel of the frame that was on the screen, or a box drawn on it around a thing.
+
+    With a box, (u, v) is a place inside it; a task may choose another one there that it can follow better.
+    """
 
     frame_id: int
     u: float
     v: float
+    box: PixelBox | None = None
+
+    @classmethod
+    def around(cls, frame_id: int, box: PixelBox) -> "Tap":
+        """Return the tap on what `box` holds: its position, and its size as well."""
+        return cls(frame_id, box.middle.u, box.middle.v, box)
 
 
 class TaskState(StrEnum):
