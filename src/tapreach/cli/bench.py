@@ -11,6 +11,8 @@ from rich.console import Console
 
 from tapreach.bench import accuracy as accuracy_bench
 from tapreach.bench import control as control_bench
+from tapreach.bench import locate as locate_bench
+from tapreach.bench import locate_plan
 from tapreach.bench import video as video_bench
 from tapreach.bench.accuracy_plan import AccuracyPlan, smoke_plan
 from tapreach.bench.document import benchmarks_document
@@ -72,6 +74,31 @@ def accuracy(
         plan = smoke_plan(used)
     Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: accuracy_bench.run_accuracy(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def locate(
+    smoke: Smoke = False,
+    taps: Annotated[int, typer.Option(min=1, help="random ones, over all scenes")] = 200,
+    jobs: Annotated[int, typer.Option(min=1, help="processes")] = 1,
+    minutes: Annotated[float, typer.Option(min=0.1, help="no tap is begun later than this")] = 90.0,
+    keep: Annotated[Path | None, typer.Option(help="file of finished taps; goes on where it ends")] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(help="picture of every tap; needs matplotlib")] = None,
+    failures: Annotated[Path | None, typer.Option(help="picture of the taps that went wrong (.jpg)")] = None,
+    json: Json = None,
+) -> None:
+    """One tap to a position in the rendered simulator, robot and all, against the truth. About 40 minutes."""
+    used = secrets.randbits(32) if seed is None else seed
+    plan = locate_plan.LocatePlan(
+        used, taps, jobs=jobs, minutes=minutes, kept=keep, plot=plot, failures=failures
+    )
+    if smoke:
+        plan = locate_plan.smoke_plan(used)
+    Console().print(f"seed {used}", highlight=False)
+    _run(lambda on_section: locate_bench.run_locate(plan, on_section, MonotonicClock()), json)
 
 
 @bench.command()

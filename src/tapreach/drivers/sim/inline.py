@@ -4,6 +4,9 @@ import asyncio
 from collections import deque
 from collections.abc import Callable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tapreach.drivers.sim.camera import HISTORY, SimCamera, Snapshot, state_at
 from tapreach.drivers.sim.child_physics import TRUTH_HISTORY, telemetry_of
 from tapreach.drivers.sim.faults import SimFaults
@@ -11,9 +14,10 @@ from tapreach.drivers.sim.host_parts import HostArm, HostBase, HostCamera
 from tapreach.drivers.sim.protocol import Drive, Message, MoveArm
 from tapreach.drivers.sim.renderer import Renderer
 from tapreach.drivers.sim.scene import Scene
-from tapreach.drivers.sim.truth import TruthTeller
+from tapreach.drivers.sim.truth import SurfacePoint, TruthTeller
 from tapreach.drivers.sim.world import World
 from tapreach.errors import LinkLost
+from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.clock import SECOND, Clock
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.interface import Listeners, Unsubscribe
@@ -34,10 +38,11 @@ class InlineSimRobot:
         seed: int = 0,
         has_pictures: bool = True,
         opengl: str = "auto",
+        shadows: bool = True,
     ) -> None:
         self._description, self._scene, self._clock = description, scene, clock
         self._faults = faults if faults is not None else scene.faults
-        self._seed, self._has_pictures, self._opengl = seed, has_pictures, opengl
+        self._seed, self._has_pictures, self._opengl, self._shadows = seed, has_pictures, opengl, shadows
         self.base = HostBase(description.base, self._send)
         self.arm = HostArm(description.arm, self._send)
         self.frames = HostCamera(description.camera, clock)
@@ -70,6 +75,7 @@ class InlineSimRobot:
         if self._has_pictures:
             picture = self._description.camera
             self._renderer = Renderer(world.model, picture.width, picture.height, self._opengl)
+            self._renderer.shadows = self._shadows
             self._camera = SimCamera(self._renderer, self._faults, self._seed, picture.delay_ms)
         self._world = world
         self._teller = TruthTeller(world.model, self._scene)
@@ -97,6 +103,23 @@ class InlineSimRobot:
         history = list(self._history)
         when_ns = at_ns or history[-1].captured_ns
         return self._teller.tell(state_at(history, when_ns), when_ns).to_json()
+
+    def surfaces_seen(
+        self, directions_in_camera: NDArray[np.float64], at_ns: int = 0
+    ) -> list[SurfacePoint | None]:
+        """Return what truly lies in each direction (n, 3) out of the camera; for tests and benches only."""
+        if self._teller is None:
+            raise LinkLost(self._health.reason)
+        history = list(self._history)
+        qpos = state_at(history, at_ns or history[-1].captured_ns)
+        return self._teller.surfaces(qpos, directions_in_camera)
+
+    def place_base(self, pose: PlanarPose) -> None:
+        """Lift the robot to `pose` in the scene; the odometry does not notice. Raises LinkLost."""
+        if self._world is None:
+            raise LinkLost(self._health.reason)
+        self._world.place_base(pose)
+        self._history.append(Snapshot(self._clock.now_ns(), self._world.snapshot()))
 
     def _send(self, message: Message) -> None:
         if self._world is None:

@@ -11,7 +11,11 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from tapreach.drivers.sim.build import OPENCV_FROM_MUJOCO
 from tapreach.drivers.sim.scene import Scene
+from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
+
+_DRAWN = np.array([1, 1, 1, 0, 0, 0], np.uint8)
+"""MuJoCo's groups of shapes that the renderer draws; the solids of the collisions are not among them."""
 
 Matrix = tuple[tuple[float, ...], ...]
 
@@ -71,6 +75,18 @@ class WorldTruth:
         return cls(objects=objects, **data)
 
 
+@dataclass(frozen=True)
+class SurfacePoint:
+    """What a line of sight meets first: the object's name ('' for room, furniture or the robot itself), its
+    distance from the camera [m], the point in the world and in the frame of its body, (3,) each [m].
+    """
+
+    name: str
+    distance: float
+    point_in_world: FloatArray
+    point_in_object: FloatArray
+
+
 class AsksTruth(Protocol):
     """A SimRobot made with tells_truth=True, or an InlineSimRobot."""
 
@@ -94,6 +110,7 @@ class TruthTeller:
         self._model = model
         self._data = mujoco.MjData(model)
         self._things = list(zip(scene.object_names(), scene.objects, strict=True))
+        self._names = frozenset(scene.object_names())
 
     def tell(self, qpos: NDArray[np.float64], captured_ns: int) -> WorldTruth:
         """Return the truth of one state."""
@@ -112,6 +129,30 @@ class TruthTeller:
             float(focal),
             tuple(self._object(index) for index in range(len(self._things))),
         )
+
+    def surfaces(
+        self, qpos: NDArray[np.float64], directions_in_camera: NDArray[np.float64]
+    ) -> list[SurfacePoint | None]:
+        """Return what each direction (n, 3) out of the camera meets first of all that is drawn; None in the
+        open.
+        """
+        self._data.qpos[:] = qpos
+        mujoco.mj_kinematics(self._model, self._data)
+        mujoco.mj_camlight(self._model, self._data)
+        camera = self._data.camera("front")
+        in_world = directions_in_camera @ (camera.xmat.reshape(3, 3) @ OPENCV_FROM_MUJOCO).T
+        return [self._met(camera.xpos, direction) for direction in in_world]
+
+    def _met(self, start: NDArray[np.float64], direction: NDArray[np.float64]) -> SurfacePoint | None:
+        geom = np.full(1, -1, np.int32)
+        base = self._model.body("base").id
+        distance = float(mujoco.mj_ray(self._model, self._data, start, direction, _DRAWN, 1, base, geom))
+        if distance < 0.0:
+            return None
+        point = start + distance * direction
+        body = self._data.body(int(self._model.geom_bodyid[geom[0]]))
+        name = body.name if body.name in self._names else ""
+        return SurfacePoint(name, distance, point, (point - body.xpos) @ body.xmat.reshape(3, 3))
 
     def _object(self, index: int) -> ObjectTruth:
         name, thing = self._things[index]

@@ -12,6 +12,7 @@ from tapreach.drivers.sim.build import build_model
 from tapreach.drivers.sim.encoders import Encoders
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.scene import Scene
+from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.messages import ArmPose, Twist
 
@@ -98,6 +99,16 @@ class World:
             arm_is_moving=any(servo.is_moving for servo in self._servos),
             needs_zero=self._board.needs_zero,
         )
+
+    def place_base(self, pose: PlanarPose) -> None:
+        """Lift the robot to `pose` in the scene, at rest; wheels and encoders do not notice."""
+        start = self.model.joint("base").qposadr[0]
+        upright = _without_heading(self.data.qpos[start + 3 : start + 7])
+        turn = np.array([math.cos(pose.heading / 2), 0.0, 0.0, math.sin(pose.heading / 2)])
+        self.data.qpos[start : start + 2] = pose.x, pose.y
+        mujoco.mju_mulQuat(self.data.qpos[start + 3 : start + 7], turn, upright)
+        self.data.qvel[self.model.joint("base").dofadr[0] :][:6] = 0.0
+        mujoco.mj_forward(self.model, self.data)
 
     def snapshot(self) -> NDArray[np.float64]:
         """Return the state that a picture needs, as one vector: cheap to copy to another thread."""

@@ -1,0 +1,72 @@
+"""The paper's own procedure on the same tap: 12 degrees, 20 cm, and its formula; beside it our estimator."""
+
+from dataclasses import dataclass
+from math import radians
+
+from tapreach.estimation.two_tap import two_tap_from_pixels
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.estimating import estimate
+from tapreach.tasks.follower import Follower, TargetLost
+from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.task import Tap, TaskContext
+
+TURN, ADVANCE = radians(12.0), 0.20
+
+
+@dataclass
+class FixedMove:
+    """A task: turn by 12 degrees and drive 20 cm; the tapped place is followed, which stands for the second
+    tap. Left as in the paper; right where a turn to the left would take it out of the picture.
+
+    sightings: the tapped frame and the last stop.
+    """
+
+    tap: Tap
+    kind = "fixed move"
+
+    def __post_init__(self) -> None:
+        self.sightings: list[Sighting] = []
+
+    async def run(self, context: TaskContext) -> str:
+        """See Task. Raises TargetLost when it is not seen at the end."""
+        follower = Follower(context, self.tap, key=1)
+        try:
+            first = await follower.open()
+            await follower.catch_up()
+            arm = context.description.arm.standard.pose()
+            await follower.during(context.pilot.move_arm(arm), _nothing)
+            await follower.during(context.pilot.turn(_turn(first, context.description)), _nothing)
+            await follower.during(context.pilot.advance(ADVANCE), _nothing)
+            last = await follower.look()
+            if last is None:
+                raise TargetLost(f"lost the tapped place: {follower.loss}")
+            self.sightings = [first, last]
+            await context.compute.call(estimate, self.sightings, context.description, False)
+        finally:
+            await follower.close()
+        return "done"
+
+
+async def _nothing() -> None:
+    pass
+
+
+def _turn(first: Sighting, description: RobotDescription) -> float:
+    """Return 12 degrees to the left, or to the right for what stands too far right for that."""
+    camera = description.camera.model()
+    shift = TURN * camera.fx
+    return TURN if first.pixel.u + shift < 0.9 * camera.size.width else -TURN
+
+
+def paper_range(first: Sighting, last: Sighting, description: RobotDescription) -> float | None:
+    """Return the distance by the paper's formula (eq. 7) from the camera [m]; None where it has none."""
+    way = first.world_from_base.between(last.world_from_base)
+    step = PlanarStep(way.heading, _advanced(way))
+    found = two_tap_from_pixels(description.camera.model(), first.pixel, last.pixel, step)
+    position = found.position
+    return None if position is None else float((position.in_first**2).sum() ** 0.5)
+
+
+def _advanced(way: PlanarPose) -> float:
+    return float((way.x**2 + way.y**2) ** 0.5)
