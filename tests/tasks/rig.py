@@ -30,6 +30,7 @@ from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import Frame, Odometry
 from tapreach.tasks.compute import InlineCompute
+from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.runner import TaskProgress, TaskRunner
 from tapreach.tasks.target import Target
 from tapreach.tasks.task import TaskContext
@@ -103,6 +104,7 @@ class Rig:
     frames: Frames
     context: TaskContext
     targets: list[Target] = field(default_factory=list)
+    moves: list[PlannedMove | None] = field(default_factory=list)
     progress: list[TaskProgress] = field(default_factory=list)
 
     async def advance(self, seconds: float) -> None:
@@ -142,6 +144,7 @@ async def running_rig(make_robot: Callable[[ManualClock], Robot]) -> AsyncIterat
         next_frame=frames.next_frame,
         report=lambda report: None,
         show_target=lambda target: rig.targets.append(target),
+        show_move=lambda move: rig.moves.append(move),
     )
     runner = TaskRunner(context, loop, lambda progress: rig.progress.append(progress))
     rig = Rig(clock, robot, loop, runner, frames, context)

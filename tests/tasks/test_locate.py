@@ -60,9 +60,11 @@ def test_tapped_object_is_located_within_its_region(name: str) -> None:
         assert "m away (95 %" in progress.message
         assert rig.loop.sent.twist.is_zero
         phases = {each.phase for each in rig.progress}
-        assert {"look", "arm", "move"} <= phases
-        preview = [each.message for each in rig.progress if "driving" in each.message]
-        assert preview, "the move is told before it is made"
+        assert {"look", "move"} <= phases
+        told = [each.message for each in rig.progress if "driving" in each.message]
+        assert told and all("expects ±" in each for each in told), "the move is told before it is made"
+        assert rig.moves[-1] is None and rig.moves[0] is not None, "and shown"
+        assert rig.moves[0].in_words == told[0]
 
     in_scene("room", test)
 

@@ -26,6 +26,8 @@ NEAREST = 0.25
 LONGEST_TURN = math.radians(60.0)
 SHORTEST_ADVANCE = 0.03
 """Nothing shorter is worth starting the wheels for [m]."""
+BESIDE = 0.05
+"""So far beside the way it has come the base may back off [m]."""
 SIGMAS = (1.0, 1.0, 0.7)
 """What views at the stages of a move are worth [px]: two while driving, the last one at rest."""
 
@@ -36,6 +38,12 @@ class Grid:
 
     turns: FloatArray
     advances: FloatArray
+
+    @property
+    def is_on_known_floor(self) -> npt.NDArray[np.bool_]:
+        """Tell (t, a) which stay beside the straight way back, when backwards; ahead the camera sees."""
+        aside = np.abs(np.sin(self.turns))[:, None] * np.maximum(-self.advances, 0.0)[None, :]
+        return np.asarray(aside <= BESIDE)
 
     def stages_in_world(self, world_from_base: PlanarPose) -> FloatArray:
         """Return world_from_base (t, a, 3, 4, 4): after the turn, half way, and at the end."""

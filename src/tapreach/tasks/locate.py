@@ -1,44 +1,54 @@
 """Automatic locating: one tap; the robot moves a little, follows the tapped place, and says where it is."""
 
+import asyncio
 from collections.abc import Coroutine
-from math import degrees, radians
+from math import radians
 from typing import Any
 
 from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.geometry.planar_motion import PlanarStep
+from tapreach.geometry.ray import Ray
 from tapreach.robot.clock import MS
 from tapreach.tasks.aiming import aimed
-from tapreach.tasks.estimating import estimate
+from tapreach.tasks.candidate_moves import SHORTEST_ADVANCE
+from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
 from tapreach.tasks.follower import Follower, TargetLost, thinned
-from tapreach.tasks.move_choice import Choice, choose_move
+from tapreach.tasks.free_way import way_behind
+from tapreach.tasks.locate_end import End, closing_sentence, has_helped, is_worthwhile
+from tapreach.tasks.locate_watch import MoveWatch, is_accurate
+from tapreach.tasks.move_choice import Choice, Room, planned_move
+from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.supposed_distance import supposed_distances
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap, TaskContext, TaskReport
 
+ACCURACY = 0.01
+"""Relative error of the range, one sigma, that is wanted unless said otherwise."""
 MOST_MOVES = 4
-MOST_DRIVEN = 0.5
-"""Way [m] that locating may drive in all."""
-FIRST_ADVANCE = 0.22
-"""The first advance is kept short [m]: how far the target is becomes known only on the way."""
-WORTHWHILE = 0.75
-"""Another move is made when it promises to bring the range's error below this share of what it is."""
-GOOD_RELATIVE_SD = 0.02
-_LEAST_TURN = radians(0.5)
-_SHOW_EVERY_NS = 250 * MS
+MOST_DRIVEN, LONGEST_ADVANCE = 0.8, 0.5
+"""Way [m] that locating may drive in all, and in one move."""
+LOOK_FRAMES = 3
+_RENEW_EVERY_NS = 90 * MS
 _APART_DISTANCE, _APART_ANGLE = 0.05, radians(6.0)
 
 
 class LocateTask:
-    """Locate what was tapped. Shows the target under `target_id` from the first moment on."""
+    """Locate what was tapped. Shows the target under `target_id` from the first moment on.
+
+    accuracy: the relative error of the range, one sigma, at which it is good enough.
+    """
 
     kind = "locate"
 
-    def __init__(self, tap: Tap, target_id: int, use_background: bool = True) -> None:
+    def __init__(
+        self, tap: Tap, target_id: int, use_background: bool = True, accuracy: float = ACCURACY
+    ) -> None:
         self._tap = tap
         self._target_id = target_id
         self._use_background = use_background
+        self._accuracy = accuracy
 
     async def run(self, context: TaskContext) -> str:
         """See Task. Raises FrameError, InputError, TargetLost, MotionInterrupted, LinkLost."""
@@ -46,58 +56,112 @@ class LocateTask:
         follower = Follower(context, tap, key=self._target_id, uses_background=self._use_background)
         report = TargetReport(self._target_id, TargetSource.LOCATE, tap, context.description)
         try:
-            return await _Locating(context, follower, report).run()
+            return await _Locating(context, follower, report, self._accuracy).run()
         finally:
+            context.show_move(None)
             await follower.close()
 
 
 class _Locating:
     """One run of the task."""
 
-    def __init__(self, context: TaskContext, follower: Follower, report: TargetReport) -> None:
+    def __init__(
+        self, context: TaskContext, follower: Follower, report: TargetReport, accuracy: float
+    ) -> None:
         self._context = context
         self._follower = follower
         self._report = report
+        self._accuracy = accuracy
         self._stops: list[Sighting] = []
-        self._estimate: PointEstimate | None = None
+        self._estimate: LocatedPoint | None = None
         self._driven = 0.0
-        self._shown_ns = 0
+        self._renewed_ns = 0
+        self._seen_ns = 0
+        self._enough = asyncio.Event()
 
     async def run(self) -> str:
-        context, follower = self._context, self._follower
         self._say("look", 0.0, "looking at the tapped place")
-        self._stops.append(await follower.open())
+        self._stops.append(await self._follower.open())
         self._show()
-        await follower.catch_up()
-        self._say("arm", 0.05, "bringing the arm to its standard pose, out of the picture")
-        await self._while_following(context.pilot.move_arm(context.description.arm.standard.pose()))
-        await self._look()
+        await self._follower.catch_up()
+        end = await self._refine()
+        await self._renew(with_advice=end not in (End.REACHED, End.LOST))
+        return self._conclusion(end)
+
+    async def _refine(self) -> End:
+        """Move and look until there is a reason to end it."""
         for move in range(MOST_MOVES):
             choice = await self._choose()
-            if choice is None or not self._is_worthwhile(choice):
+            if choice is None:
+                return End.NO_MOVE
+            before = self._estimate
+            if not is_worthwhile(choice, before):
+                return End.NO_GAIN
+            planned = PlannedMove.of(choice, self._context.poses.newest()[1])
+            self._say("move", 0.1 + 0.8 * move / MOST_MOVES, planned.in_words)
+            await self._make(planned)
+            if self._follower.loss:
+                return End.LOST
+            if is_accurate(self._estimate, self._accuracy):
+                return End.REACHED
+            if not has_helped(before, self._estimate):
+                return End.NO_GAIN
+            if self._driven > MOST_DRIVEN - SHORTEST_ADVANCE:
                 break
-            self._say("move", 0.1 + 0.8 * move / MOST_MOVES, _preview(choice.step))
-            await self._make(choice.step)
-        await self._renew(with_advice=True)
-        return self._conclusion()
+        return End.WAY_USED_UP
 
-    async def _make(self, step: PlanarStep) -> None:
-        """Turn, look, advance, look."""
-        if abs(step.turn) > _LEAST_TURN:
-            await self._while_following(self._context.pilot.turn(step.turn))
-            await self._look()
-        await self._while_following(self._context.pilot.advance(step.advance))
-        self._driven += step.advance
+    async def _make(self, planned: PlannedMove) -> None:
+        """Make the move as far as it has a purpose, the arm going out of the picture meanwhile; look."""
+        arm = self._context.description.arm.standard.pose()
+        watch = self._watch_over(planned)
+        self._context.show_move(planned)
+        self._enough.clear()
+        self._seen_ns = self._context.clock.now_ns()
+        try:
+            await self._follower.during(
+                self._until_enough(self._context.pilot.move(planned.step, arm)), lambda: self._refresh(watch)
+            )
+        finally:
+            self._context.show_move(None)
+        if self._enough.is_set():
+            await self._context.pilot.move(PlanarStep(0.0, 0.0))
+        way = planned.start.between(self._context.poses.newest()[1])
+        self._driven += (way.x**2 + way.y**2) ** 0.5
         await self._look()
 
-    async def _while_following(self, motion: Coroutine[Any, Any, object]) -> None:
-        await self._follower.during(motion, self._refresh)
+    async def _until_enough(self, motion: Coroutine[Any, Any, object]) -> None:
+        """Carry out a motion, or end it at once when it has no more purpose."""
+        moving, enough = asyncio.ensure_future(motion), asyncio.ensure_future(self._enough.wait())
+        try:
+            await asyncio.wait({moving, enough}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            enough.cancel()
+            moving.cancel()
+            await asyncio.gather(moving, enough, return_exceptions=True)
+        if not moving.cancelled():
+            moving.result()
+
+    async def _refresh(self, watch: MoveWatch) -> None:
+        """Renew what is known a few times a second, and see whether the move has a purpose still."""
+        now_ns = self._context.clock.now_ns()
+        if not self._follower.loss:
+            self._seen_ns = now_ns
+        if now_ns - self._renewed_ns >= _RENEW_EVERY_NS:
+            await self._renew(with_advice=False)
+        if watch.reason_to_stop(self._follower.sightings, self._estimate, now_ns - self._seen_ns):
+            self._enough.set()
+
+    def _watch_over(self, planned: PlannedMove) -> MoveWatch:
+        ray = self._first_ray
+        nearest = self._supposed_distances(None)[0]
+        is_forward = planned.step.advance > 0.0
+        return MoveWatch(self._context.description, self._accuracy, ray, nearest, is_forward)
 
     async def _look(self) -> None:
         """Take a sighting at rest and renew the estimate. Raises TargetLost when it is not seen
         and not known.
         """
-        sighting = await self._follower.look()
+        sighting = await self._follower.look(LOOK_FRAMES)
         if sighting is not None:
             self._stops.append(sighting)
         await self._renew(with_advice=False)
@@ -106,26 +170,15 @@ class _Locating:
                 f"lost the tapped place: {self._follower.loss}. Tap it again, or something near it"
             )
 
-    async def _refresh(self) -> None:
-        """Renew what is shown on the way, a few times a second.
-
-        The estimate only once it is sharp: before, its range interval takes longer to compute than a frame
-        lasts.
-        """
-        if self._context.clock.now_ns() - self._shown_ns < _SHOW_EVERY_NS:
-            return
-        if self._estimate is not None and self._estimate.is_ellipsoid_fair:
-            await self._renew(with_advice=False)
-        else:
-            self._show()
-
     async def _renew(self, with_advice: bool) -> None:
+        self._renewed_ns = self._context.clock.now_ns()
         sightings = self._sightings()
         if len(sightings) > 1:
             self._estimate = await self._context.compute.call(
                 estimate, sightings, self._context.description, with_advice
             )
-            self._tell_follower()
+            if self._is_determined:
+                self._follower.point_in_world = self._estimate.point_in_world
         self._show()
 
     def _sightings(self) -> list[Sighting]:
@@ -134,50 +187,38 @@ class _Locating:
         others = [each for each in self._follower.sightings if id(each) not in stops]
         return thinned(self._stops, others, _APART_DISTANCE, _APART_ANGLE)
 
-    def _tell_follower(self) -> None:
-        if self._is_determined and self._estimate is not None:
-            self._follower.point_in_world = self._estimate.point_in_world
+    @property
+    def _first_ray(self) -> Ray:
+        return ray_of(self._stops[0], self._context.description)
+
+    def _supposed_distances(self, estimate: PointEstimate | None) -> tuple[float, ...]:
+        tilt_sigma = radians(self._context.description.camera.mount.angle_sigma_deg)
+        return supposed_distances(self._first_ray, estimate, tilt_sigma)
 
     async def _choose(self) -> Choice | None:
-        first_ray = ray_of(self._stops[0], self._context.description)
-        distances = supposed_distances(first_ray, self._estimate)
-        most = FIRST_ADVANCE if self._driven == 0.0 else MOST_DRIVEN - self._driven
+        ahead = min(LONGEST_ADVANCE, MOST_DRIVEN - self._driven)
+        seen = self._estimate
         return await self._context.compute.call(
-            choose_move,
+            planned_move,
             self._sightings(),
-            self._follower.last.world_from_base,
-            [first_ray.at(distance) for distance in distances],
-            most,
+            self._context.poses.newest()[1],
+            [self._first_ray.at(distance) for distance in self._supposed_distances(seen)],
+            Room(ahead, min(ahead, way_behind(self._context.poses))),
+            self._accuracy,
+            seen is None or seen.heading_from is HeadingSource.BACKGROUND,
             self._context.description,
         )
-
-    def _is_worthwhile(self, choice: Choice) -> bool:
-        """Tell whether a move is needed: always one, then while it promises much and the answer
-        is not good.
-        """
-        if self._follower.loss:
-            return False
-        if self._driven == 0.0 or self._estimate is None or not self._is_determined:
-            return True
-        now = self._estimate.relative_sd
-        return now > GOOD_RELATIVE_SD and choice.relative_sd < WORTHWHILE * now
 
     @property
     def _is_determined(self) -> bool:
         return self._estimate is not None and self._estimate.status is Status.DETERMINED
 
-    def _conclusion(self) -> str:
-        """Return the closing sentence. Raises TargetLost when the place was lost before its range
-        was known.
-        """
+    def _conclusion(self, end: End) -> str:
+        """Return the closing sentence."""
         target = self._report.target(self._sightings(), self._estimate, not self._follower.loss)
-        if target.range is None or target.range_interval is None:
+        if self._estimate is None or target.range is None or target.range_interval is None:
             return self._no_position(target)
-        low, high = target.range_interval
-        sentence = f"{target.range:.2f} m away (95 %: {low:.2f} to {high:.2f} m)"
-        if self._follower.loss:
-            sentence += f"; lost on the way ({self._follower.loss}), from the views before"
-        return sentence
+        return closing_sentence(target, self._estimate, end, self._accuracy, self._follower.loss)
 
     def _no_position(self, target: Target) -> str:
         if self._driven == 0.0:
@@ -185,16 +226,9 @@ class _Locating:
         return " ".join(part for part in (f"no position: {target.reason}.", target.advice) if part)
 
     def _show(self) -> None:
-        self._shown_ns = self._context.clock.now_ns()
         is_following = not self._follower.loss
         target = self._report.target(self._sightings(), self._estimate, is_following, self._follower.loss)
         self._context.show_target(target)
 
     def _say(self, phase: str, progress: float, message: str) -> None:
         self._context.report(TaskReport(phase, progress, message))
-
-
-def _preview(step: PlanarStep) -> str:
-    side = "left" if step.turn > 0.0 else "right"
-    turn = f"turning {abs(degrees(step.turn)):.0f}° {side}, then " if abs(step.turn) > _LEAST_TURN else ""
-    return f"{turn}driving {100.0 * step.advance:.0f} cm forward"

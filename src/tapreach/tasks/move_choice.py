@@ -4,8 +4,9 @@ About a hundred candidates are scored at once by the bound on the range that the
 end would leave, over the supposed distances of the target; then some more around the best.
 """
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from tapreach.tasks.sighting import Sighting, observation_of
 
 Score = Callable[[FloatArray, FloatArray], FloatArray]
 """From a target (3,) and world_from_base along c moves (c, 3, 4, 4), as Grid has them, to sd(1/Z)·Z (c,)."""
+SEEN_TURN = math.radians(0.15)
+"""What is left of the error of a turn [rad/√rad], [rad/√m] where the background is followed."""
 _NOTHING = 1.0
 """What is known, as sd(1/Z)·Z, of a target for which not even the shortest advance can be made."""
 
@@ -33,6 +36,14 @@ class MoveCosts:
     per_metre: float = 0.4
     per_radian: float = 0.1
     good_enough: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """What may be driven ahead and back [m]."""
+
+    ahead: float
+    behind: float
 
 
 FREE_OF_CHARGE = MoveCosts(0.0, 0.0, 0.0)
@@ -90,10 +101,39 @@ def choose_move(
     return None
 
 
-def bound_score(sightings: Sequence[Sighting], description: RobotDescription) -> Score:
-    """Return the score by the Cramér-Rao bound of what was sighted together with what a move would show."""
+def planned_move(
+    sightings: Sequence[Sighting],
+    world_from_base: PlanarPose,
+    points_in_world: Sequence[FloatArray],
+    room: Room,
+    accuracy: float,
+    turns_are_seen: bool,
+    description: RobotDescription,
+) -> Choice | None:
+    """Return `choose_move` as a task wants it: everything that goes in can travel to another process."""
+    return choose_move(
+        sightings,
+        world_from_base,
+        points_in_world,
+        room.ahead,
+        description,
+        most_back=room.behind,
+        costs=MoveCosts(good_enough=accuracy),
+        score=bound_score(sightings, description, turns_are_seen),
+    )
+
+
+def bound_score(
+    sightings: Sequence[Sighting], description: RobotDescription, turns_are_seen: bool = False
+) -> Score:
+    """Return the score by the Cramér-Rao bound of what was sighted together with what a move would show.
+
+    turns_are_seen: the background tells the turns better than the wheels do.
+    """
     known = [observation_of(sighting, description) for sighting in sightings]
     motion, mount = odometry_noise(description), mount_noise(description)
+    if turns_are_seen:
+        motion = replace(motion, turn_scale=0.0, turn_per_sqrt_rad=SEEN_TURN, turn_per_sqrt_m=SEEN_TURN)
     return lambda point, ways: relative_sds_after(known, motion, mount, point, ways, SIGMAS)
 
 
@@ -138,7 +178,7 @@ class _Search:
     def _relative_sds(self, grid: Grid, point_in_world: FloatArray) -> FloatArray:
         """Return sd(1/Z)·Z (t, a) after each candidate; infinite where the target would be lost or hit."""
         stages = grid.stages_in_world(self.world_from_base)
-        can_be_made = is_seen_and_clear(stages, point_in_world, self.description)
+        can_be_made = is_seen_and_clear(stages, point_in_world, self.description) & grid.is_on_known_floor
         found = np.full(can_be_made.shape, np.inf)
         if can_be_made.any():
             found[can_be_made] = self.score(point_in_world, stages[can_be_made])

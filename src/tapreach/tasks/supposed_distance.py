@@ -1,30 +1,47 @@
 """How far a target may be, for planning a move: from the estimate so far, or from where its ray meets the
-floor.
+floor. It never enters the answer.
 """
 
+import math
+
 from tapreach.estimation.point_estimate import PointEstimate
-from tapreach.geometry.ray import Ray, meet_plane
+from tapreach.geometry.ray import Ray
 
 UNKNOWN = (0.6, 1.5, 4.0)
 """Distances [m] planned for when nothing is known."""
+HEIGHTS = (0.55, 0.3, 0.08)
+"""How high up a thing on the floor is tapped, as a share of the camera's height: things are small."""
 _FARTHEST = 6.0
 _NEAREST = 0.25
 
 
-def supposed_distances(ray_in_world: Ray, estimate: PointEstimate | None) -> tuple[float, ...]:
-    """Return distances [m] along the tapped ray that a move must suit, the nearest first.
+def supposed_distances(
+    ray_in_world: Ray, estimate: PointEstimate | None, tilt_sigma: float = 0.0
+) -> tuple[float, ...]:
+    """Return distances [m] along the tapped ray that a move must suit, the nearest first, equally likely.
 
     With an estimate: both ends of its range interval and the middle. Without: a thing that is seen before
-    the floor stands on it or nearer; above the horizon anything goes.
+    the floor stands on it, tapped at some of HEIGHTS, or lies where the ray meets the floor if it looks
+    up by `tilt_sigma` [rad] more than supposed; above the horizon anything goes.
     """
     if estimate is not None and estimate.range_interval_95 is not None:
-        low, high = estimate.range_interval_95
-        far = min(high if high is not None else _FARTHEST, _FARTHEST)
-        low = max(min(low, far), _NEAREST)
-        middle = estimate.range if estimate.range is not None else (low * far) ** 0.5
-        return (low, min(max(middle, low), max(far, low)), max(far, low))
-    floor = meet_plane(ray_in_world, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
-    if floor is None:
+        return _of_estimate(estimate, *estimate.range_interval_95)
+    height = float(ray_in_world.origin[2])
+    direction = ray_in_world.direction
+    depression = math.atan2(-float(direction[2]), math.hypot(float(direction[0]), float(direction[1])))
+    if height <= 0.0 or depression <= 0.0:
         return UNKNOWN
-    distance = min(float(((floor - ray_in_world.origin) ** 2).sum() ** 0.5), _FARTHEST)
-    return tuple(max(_NEAREST, distance * share) for share in (0.5, 0.75, 1.0))
+    floor = height / math.sin(depression)
+    if floor * (1.0 - HEIGHTS[0]) > _FARTHEST:
+        return UNKNOWN
+    higher = depression - tilt_sigma
+    farthest = height / math.sin(higher) if higher > 0.0 else _FARTHEST
+    supposed = [*(floor * (1.0 - share) for share in HEIGHTS), max(floor, farthest)]
+    return tuple(min(max(each, _NEAREST), _FARTHEST) for each in supposed)
+
+
+def _of_estimate(estimate: PointEstimate, low: float, high: float | None) -> tuple[float, ...]:
+    far = min(high if high is not None else _FARTHEST, _FARTHEST)
+    low = max(min(low, far), _NEAREST)
+    middle = estimate.range if estimate.range is not None else (low * far) ** 0.5
+    return (low, min(max(middle, low), max(far, low)), max(far, low))

@@ -13,6 +13,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import Frame
+from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.target import Target
 
 T = TypeVar("T")
@@ -79,6 +80,8 @@ class TaskContext:
     """Show a line on the page."""
     show_target: Callable[[Target], None]
     """Show or update a target on the page (newest wins, by target_id)."""
+    show_move: Callable[[PlannedMove | None], None] = lambda _: None
+    """Show the move that is about to be made; None: it is over."""
 
 
 class Task(Protocol):

@@ -1,0 +1,63 @@
+"""Why a move that is being made for locating should end here and now."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tapreach.estimation.point_estimate import PointEstimate, Status
+from tapreach.geometry.ray import Ray
+from tapreach.robot.clock import MS
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.candidate_moves import NEAREST
+from tapreach.tasks.sighting import Sighting, ray_of
+
+EDGE = 0.035
+"""A target that moves outwards this near to the picture's edge is about to be lost; share of the picture."""
+LOST_NS = 600 * MS
+"""So long it may be out of sight, as a passing shadow or arm makes it, before driving on has no purpose."""
+
+
+def is_accurate(estimate: PointEstimate | None, accuracy: float) -> bool:
+    """Tell whether the range is known with a relative error (one sigma) no larger than wanted."""
+    return estimate is not None and estimate.status is Status.DETERMINED and estimate.relative_sd <= accuracy
+
+
+@dataclass(frozen=True)
+class MoveWatch:
+    """Watches one move. ray: the first line of sight. nearest: where on it the target may be at the nearest
+    [m], as long as no estimate says better.
+    """
+
+    description: RobotDescription
+    accuracy: float
+    ray: Ray
+    nearest: float
+    is_forward: bool
+
+    def reason_to_stop(
+        self, sightings: list[Sighting], estimate: PointEstimate | None, unseen_ns: int
+    ) -> str:
+        """Return why, '' while the move may go on. unseen_ns: how long the target has not been seen."""
+        if is_accurate(estimate, self.accuracy):
+            return "the wanted accuracy is reached"
+        if unseen_ns >= LOST_NS:
+            return "the target is out of sight"
+        if self.is_forward and self._is_too_near(sightings[-1], estimate):
+            return "the target may be right ahead"
+        if len(sightings) > 1 and self._leaves_the_picture(sightings[-2], sightings[-1]):
+            return "the target is about to leave the picture"
+        return ""
+
+    def _is_too_near(self, last: Sighting, estimate: PointEstimate | None) -> bool:
+        interval = estimate.range_interval_95 if estimate is not None else None
+        nearest = self.ray.at(interval[0] if interval is not None else self.nearest)
+        camera = ray_of(last, self.description).origin
+        return float(np.linalg.norm(nearest - camera)) < NEAREST
+
+    def _leaves_the_picture(self, before: Sighting, last: Sighting) -> bool:
+        return self._from_edge(last) < min(EDGE, self._from_edge(before))
+
+    def _from_edge(self, sighting: Sighting) -> float:
+        size = self.description.camera.model().size
+        u, v = sighting.pixel.u / size.width, sighting.pixel.v / size.height
+        return min(u, v, 1.0 - u, 1.0 - v)
