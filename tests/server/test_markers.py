@@ -1,15 +1,18 @@
 """Targets in the picture: where the camera model says, with a region that grows with the uncertainty."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tapreach.estimation.box_extent import BoxExtent
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import load_robot
 from tapreach.server.markers import Mark, MarkerProjection
 from tapreach.server.views import target_view
+from tapreach.tasks.extent import Extent, ExtentSource
 from tapreach.tasks.target import Target, TargetSource
 
 CAMERA = load_robot(Path(__file__).resolve().parents[2] / "robots" / "fake.toml").camera
@@ -84,3 +87,33 @@ def test_outline_on_the_floor_holds_95_percent():
     outline = np.array(target_view(given, HERE).region_in_world) - given.point_in_world[:2]
     inverse = np.linalg.inv(given.point_cov_in_world[:2, :2])
     assert np.einsum("ni,ij,nj->n", outline, inverse, outline) == pytest.approx(np.full(32, 5.991), abs=0.01)
+
+
+def sized(point) -> Target:
+    offsets = np.array([[0.0, 0.1, 0.2], [0.0, -0.1, 0.2], [0.0, -0.1, 0.0], [0.0, 0.1, 0.0]])
+    corners = np.array(point) + offsets
+    size = BoxExtent(0.2, 0.2, 0.01, 0.02, corners)
+    return replace(target(point), extent=Extent(ExtentSource.BOX, size, ""))
+
+
+def test_box_of_the_size_sticks_to_the_thing_wherever_the_robot_is():
+    thing = sized(ahead(1.0))
+    for pose in (HERE, PlanarPose(0.5, -0.1, 0.35)):
+        (marker,) = markers(thing, pose=pose)
+        camera_from_world = (pose.to_rigid() * CAMERA.mount.base_from_camera()).inv()
+        expected = CAMERA.model().project(camera_from_world.apply(thing.extent.size.corners_in_world)).pixels
+        assert np.array(marker["box"]) == pytest.approx(expected, abs=0.06)
+        assert len(marker["region"]) > 8
+
+
+def test_target_without_a_size_has_no_box_and_says_so():
+    assert markers(target(ahead(1.0)))[0]["box"] == []
+    assert target_view(target(ahead(1.0)), HERE).extent is None
+
+
+def test_size_is_told_with_its_sigmas_and_no_size_with_its_reason():
+    told = target_view(sized(ahead(1.0)), HERE).extent
+    assert (told.source, told.width, told.height_sigma, told.reason) == ("box", 0.2, 0.02, "")
+    none = replace(target(ahead(1.0)), extent=Extent(ExtentSource.BOX, None, "straight below"))
+    told = target_view(none, HERE).extent
+    assert (told.width, told.width_sigma, told.reason) == (None, None, "straight below")

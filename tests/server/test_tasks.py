@@ -56,6 +56,41 @@ def test_floor_tap_shows_a_target_and_marks_it_in_the_next_picture(play):
     play(scenario)
 
 
+def test_box_on_the_floor_shows_its_size_and_marks_its_corners(play):
+    async def scenario(here):
+        page = await here.driver()
+        box = [290.0, 250.0, 350.0, 330.0]
+        assert (await tapped(here, page, "floor", v=290.0, box=box))["ok"]
+        await page.until(lambda: "target" in page.news)
+        target = page.news["target"]
+        assert (target["u"], target["v"]) == (320.0, 330.0)
+        assert target["extent"]["source"] == "box"
+        assert 0.0 < target["extent"]["width"] < target["extent"]["height"] < 0.3
+        assert target["extent"]["width_sigma"] > 0.0
+
+    play(scenario)
+
+
+@pytest.mark.parametrize(
+    ("box", "reason"),
+    [
+        ([300.0, 280.0, 302.0, 320.0], "2.0 px wide"),
+        ([340.0, 280.0, 300.0, 320.0], "left, top, right, bottom"),
+        ([10.0, 10.0, 60.0, 60.0], "outside its own box"),
+        ([900.0, 10.0, 960.0, 60.0], "at least 4 px"),
+    ],
+)
+def test_box_that_means_nothing_is_refused_with_the_reason(play, box, reason):
+    async def scenario(here):
+        page = await here.driver()
+        answer = await tapped(here, page, "locate", box=box)
+        assert not answer["ok"]
+        assert reason in answer["reason"]
+        assert not here.station.tasks.is_running
+
+    play(scenario)
+
+
 def test_target_stays_where_it_is_while_the_robot_moves(play):
     async def scenario(here):
         page = await here.driver()

@@ -6,9 +6,11 @@ from itertools import product
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.pixel_box import PixelBox
 from tapreach.vision.image_io import Gray
-from tapreach.vision.patch import GOOD_SIGMA, HALF_SIZES, patch_of_half
+from tapreach.vision.patch import GOOD_SIGMA, patch_of_half
 from tapreach.vision.warp import warp_at
 
+_LEAST_HALF, _MOST_HALF = 6, 11
+"""Half size of the patches compared [px]; as far as the box is large enough they lie inside it."""
 _SHARE = 0.6
 """Places are looked for in this share of the box: nearer to its edges the patch sees what lies behind."""
 _STEPS = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -22,13 +24,16 @@ def place_to_follow(picture: Gray, box: PixelBox) -> Pixel:
     Nearer to the middle is better: there the thing is most surely what is seen. The box lies on the picture.
     """
     middle = box.middle
-    if _expected_sigma(picture, middle) <= GOOD_SIGMA:
+    half = int(min(max(min(box.width, box.height) * 0.4, _LEAST_HALF), _MOST_HALF))
+    if _expected_sigma(picture, middle, half) <= GOOD_SIGMA:
         return middle
     across, down = _SHARE * box.width / 2.0, _SHARE * box.height / 2.0
     ways = sorted(product(_STEPS, _STEPS), key=lambda way: math.hypot(*way))
     places = [(Pixel(middle.u + x * across, middle.v + y * down), math.hypot(x, y)) for x, y in ways]
-    return min(places, key=lambda each: _expected_sigma(picture, each[0]) * (1.0 + _PULL * each[1] ** 2))[0]
+    return min(
+        places, key=lambda each: _expected_sigma(picture, each[0], half) * (1.0 + _PULL * each[1] ** 2)
+    )[0]
 
 
-def _expected_sigma(picture: Gray, place: Pixel) -> float:
-    return patch_of_half(picture, warp_at(place.u, place.v), HALF_SIZES[0]).expected_sigma
+def _expected_sigma(picture: Gray, place: Pixel, half: int) -> float:
+    return patch_of_half(picture, warp_at(place.u, place.v), half).expected_sigma
