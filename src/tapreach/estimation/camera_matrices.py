@@ -7,13 +7,15 @@ import numpy as np
 from tapreach.estimation.small_rotations import backward_rotations, cross_matrices
 from tapreach.geometry.finite import FloatArray
 
+_IDENTITY = np.eye(3)
+
 
 @dataclass(frozen=True)
 class CameraMatrices:
     """m guesses of n cameras.
 
     matrices (m, n, 3, 4): to each camera from homogeneous points of the nominal first one, (4) and (5).
-    back (m, n, 3, 3): exp(-phi). slopes (m, n, 3, 3): right Jacobians at phi. into_view (n, 3, 3): nominal
+    back (m, n or 1, 3, 3): exp(-phi). slopes, of this shape: right Jacobians at phi. into_view (n, 3, 3): nominal
     rotations. by_normal (n, 6, k): errors per unit normal. first: None where the first camera has no errors,
     else its position (m, 3) and rotation (m, 3, 3) in the nominal one.
     """
@@ -34,9 +36,10 @@ class CameraMatrices:
         rho = homogeneous[:, 3]
         if self.by_normal.shape[2] == 0:
             return np.zeros((*slopes.shape[:-1], 0))
-        by_shift = slopes @ (-rho[:, None, None, None] * self.back)
-        by_turn = slopes @ (cross_matrices(points) @ self.slopes)
-        by_x = np.concatenate([by_shift, by_turn], axis=-1) @ self.by_normal
+        by_error = np.empty((*points.shape, 6))
+        by_error[..., :3] = -rho[:, None, None, None] * self.back
+        np.matmul(cross_matrices(points), self.slopes, out=by_error[..., 3:])
+        by_x = slopes @ by_error @ self.by_normal
         if self.first is not None:
             onward = slopes @ (self.back @ self.into_view)
             by_x += onward @ self.in_first_by_normals(homogeneous)[:, None]
@@ -56,10 +59,8 @@ def camera_matrices(nominal: FloatArray, by_normal: FloatArray, normals: FloatAr
     """Return the cameras for normals (m, k), given the nominal ones (n, 3, 4) and their errors (n, 6, k)."""
     count, views = len(normals), len(nominal)
     into_view = nominal[:, :, :3]
-    if by_normal.shape[2] == 0:
-        still = np.broadcast_to(np.eye(3), (count, views, 3, 3))
-        matrices = np.broadcast_to(nominal, (count, views, 3, 4))
-        return CameraMatrices(matrices, still, still, into_view, by_normal, None)
+    if by_normal.shape[2] == 0 or not normals.any():
+        return _nominal_cameras(nominal, by_normal, count)
     errors = (normals @ by_normal.reshape(6 * views, -1).T).reshape(count, views, 6)
     back, slopes = backward_rotations(errors[..., 3:])
     first, ahead = None, nominal
@@ -71,6 +72,14 @@ def camera_matrices(nominal: FloatArray, by_normal: FloatArray, normals: FloatAr
         ahead = np.broadcast_to(nominal, (count, views, 3, 4)).copy()
     ahead[..., 3] -= errors[..., :3]
     return CameraMatrices(back @ ahead, back, slopes, into_view, by_normal, first)
+
+
+def _nominal_cameras(nominal: FloatArray, by_normal: FloatArray, count: int) -> CameraMatrices:
+    """Return the cameras where no pose has an error."""
+    still = np.empty((count, 1, 3, 3))
+    still[:] = _IDENTITY
+    first = (np.zeros((count, 3)), still[:, 0]) if by_normal[0].any() else None
+    return CameraMatrices(np.array([nominal] * count), still, still, nominal[:, :, :3], by_normal, first)
 
 
 def _as_poses(shifts: FloatArray, rotations: FloatArray) -> FloatArray:

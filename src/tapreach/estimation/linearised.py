@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dposv
 
 from tapreach.geometry.finite import FloatArray
 
@@ -41,15 +42,18 @@ class Linearised:
         covariance = self.by_errors @ np.swapaxes(self.by_errors, 1, 2)
         if damping is not None and damping.any():
             covariance /= (1.0 + damping)[:, None, None]
-        rows = np.arange(covariance.shape[1])
-        covariance[:, rows, rows] += 1.0
+        rows = covariance.shape[1]
+        covariance.reshape(len(covariance), -1)[:, :: rows + 1] += 1.0
         return np.asarray(covariance)
 
     def solved(self, right: FloatArray, damping: FloatArray | None = None) -> FloatArray:
         """Return C⁻¹ right (m, 2n, r)."""
         if self.by_errors.shape[2] == 0:
             return right
-        return np.asarray(np.linalg.solve(self.noise(damping), right), dtype=np.float64)
+        noise = self.noise(damping)
+        if len(noise) == 1:  # LAPACK as it is: numpy's wrapper takes longer than a small system itself
+            return np.asarray(dposv(noise[0], right[0])[1])[None]
+        return np.asarray(np.linalg.solve(noise, right), dtype=np.float64)
 
     def on_target(self) -> FloatArray:
         """Return the information (m, 3, 3) on (a, b, rho), the pose errors marginalised: equation (7)."""

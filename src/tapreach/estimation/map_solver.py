@@ -1,16 +1,20 @@
 """The most probable target and pose errors, from several depths (docs/estimation.md, 5 and 6)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from tapreach.estimation.gauss_newton import descended
+from tapreach.estimation.gauss_newton_plain import settled
 from tapreach.estimation.linearised import Linearised
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
 # Inverse depths to start from, in units of 1 over the baseline.
 _STARTS = np.array([0.0, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6, 1.0, 2.0, 4.0])
+
+_CLEAR = 3.0  # sigmas from infinity, and of the squared residuals above their mean
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,13 @@ class Solution:
 
 
 def solve(model: ViewModel) -> Solution | None:
-    """Return the best minimum over several starts in depth; None where no depth has it before all cameras."""
+    """Return the best minimum over several starts in depth; None where no depth has it before all cameras.
+
+    Where the lines of sight nearly meet well before infinity there is but one, found at once.
+    """
+    near = _at_crossing(model)
+    if near is not None:
+        return near
     starts = _valleys(model)
     if len(starts) == 0:
         return None
@@ -41,6 +51,20 @@ def solve(model: ViewModel) -> Solution | None:
         return None
     views = found.take(np.array([best])) if len(starts) > 1 else found
     return Solution(views.x[0], float(views.costs[0]), views, views.on_target()[0])
+
+
+def _at_crossing(model: ViewModel) -> Solution | None:
+    """Return the minimum next to where the lines of sight nearly meet, where it is beyond doubt the best."""
+    start = model.triangulated()
+    views = settled(model, start) if start is not None and start[2] > 0.0 else None
+    if views is None:
+        return None
+    freedom = max(2 * int(model.is_used.sum()) - 3, 1)
+    on_target, rho, cost = views.on_target()[0], float(views.x[0, 2]), float(views.costs[0])
+    is_clear = rho > 0.0 and inverse_depth_information(on_target) * rho * rho > _CLEAR**2
+    if not is_clear or cost > freedom + _CLEAR * math.sqrt(2.0 * freedom):
+        return None
+    return Solution(views.x[0], cost, views, on_target)
 
 
 def covariance_of(information: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg.lapack import dposv
 
 from tapreach.estimation.camera_matrices import CameraMatrices, camera_matrices
 from tapreach.estimation.linearised import Linearised
@@ -93,11 +94,16 @@ class ViewModel:
         points = (cameras.matrices @ homogeneous[:, None, :, None])[..., 0]
         depths = points[..., 2]
         is_before = _is_before(points)
-        is_in_front = np.all(is_before | ~self.is_used, axis=1)
-        safe = np.where(is_before & self.is_used, depths, 1.0)[..., None]
-        projected = points[..., :2] / safe
-        weights = self._used_weights / safe[..., None]
-        slopes = np.concatenate([weights, -weights @ projected[..., None]], axis=-1)
+        if is_before.all():
+            is_in_front, safe = np.ones(len(x), dtype=bool), depths
+        else:
+            is_in_front = np.all(is_before | ~self.is_used, axis=1)
+            safe = np.where(is_before & self.is_used, depths, 1.0)
+        projected = points[..., :2] / safe[..., None]
+        weights = self._used_weights / safe[..., None, None]
+        slopes = np.empty((*weights.shape[:-1], 3))
+        slopes[..., :2] = weights
+        np.matmul(weights, -projected[..., None], out=slopes[..., 2:])
         residuals = (self._used_weights @ (projected - self.measured)[..., None])[..., 0]
         by_target = slopes @ cameras.matrices[..., _TARGET_COLUMNS]
         by_errors = cameras.by_normals(slopes, points, homogeneous)
@@ -160,21 +166,38 @@ class ViewModel:
         is_used[view] = False
         return replace(self, is_used=is_used)
 
+    def triangulated(self) -> FloatArray | None:
+        """Return x (3 + k,) where all lines of sight nearly meet, poses without errors; None where singular.
+
+        Linear least squares of (x − measured · z) in pixels: exact for exact sightings. Source: Hartley and
+        Zisserman, Multiple View Geometry, 12.2.
+        """
+        ahead = self.nominal[:, 2:]
+        rows = (self._used_weights @ (self.nominal[:, :2] - self.measured[:, :, None] * ahead)).reshape(-1, 4)
+        products = rows.T @ rows
+        known = products[_TARGET_COLUMNS]
+        _, solved, failed = dposv(known[:, _TARGET_COLUMNS], -known[:, 2])
+        if failed:
+            return None
+        x = np.zeros(self.unknowns)
+        x[:3] = solved
+        return x
+
     @cached_property
     def _used_weights(self) -> FloatArray:
-        return self.weights * self.is_used[:, None, None]
+        return self.weights if self.is_used.all() else self.weights * self.is_used[:, None, None]
 
 
 def _is_before(points: FloatArray) -> npt.NDArray[np.bool_]:
     """Tell which homogeneous points (..., 3) a camera can see before it; at its plane slopes overflow."""
-    off_axis = np.abs(points[..., :2]).max(axis=-1)
+    off_axis = np.maximum.reduce(np.abs(points[..., :2]), axis=-1)
     return np.asarray(points[..., 2] > np.maximum(_IN_FRONT, _SEEN * off_axis))
 
 
 def homogeneous_points(x: FloatArray) -> FloatArray:
     """Return equation (2), (a, b, 1, rho): (m, 4), for x (m, 3 or more)."""
-    points = np.ones((len(x), 4))
-    points[:, :2], points[:, 3] = x[:, :2], x[:, 2]
+    points = np.empty((len(x), 4))
+    points[:, :2], points[:, 2], points[:, 3] = x[:, :2], 1.0, x[:, 2]
     return points
 
 

@@ -1,0 +1,51 @@
+"""Plain Gauss-Newton for one point, as most sets of views need no more; it says so where they do."""
+
+import numpy as np
+from scipy.linalg.lapack import dposv
+
+from tapreach.estimation.linearised import Linearised
+from tapreach.estimation.view_model import ViewModel
+from tapreach.geometry.finite import FloatArray
+
+_ITERATIONS = 8
+_TOLERANCE = 1e-8  # of the squared residuals still to gain: 1e-4 sigma
+
+
+def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
+    """Return the minimum of (6) reached from `start` (3 + k,) by full steps, all of which lower the cost.
+
+    None where a step does not, or puts the target behind a camera, or where they do not come to an end:
+    then it takes `gauss_newton.descended`.
+    """
+    now = model.linearised(start[None])
+    before = np.inf
+    for _ in range(_ITERATIONS):
+        if not now.is_in_front[0]:
+            return None
+        step, promised = _step(now)
+        after = model.linearised(now.x + step)
+        if not after.costs[0] <= now.costs[0] * (1.0 + 1e-12) + 1e-15:
+            return None
+        now = after
+        # The promise shrinks at least as fast again as it did.
+        if promised * min(1.0, promised / before) < _TOLERANCE:
+            return now
+        before = max(promised, 1e-300)
+    return None
+
+
+def _step(now: Linearised) -> tuple[FloatArray, float]:
+    """Return the step (3 + k,) to the minimum of the linearised problem and the fall of the cost there.
+
+    With e = r − Jz z and w = C⁻¹ (e + Jt dt), Jtᵀ w = 0: dz = −Jzᵀ w − z, and what remains of the cost is eᵀ w.
+    """
+    by_target, by_errors, normals = now.by_target[0], now.by_errors[0], now.x[0, 3:]
+    expected = now.residuals[0] - by_errors @ normals
+    solved = now.solved(np.column_stack([by_target, expected])[None])[0]
+    products = by_target.T @ solved
+    _, on_target, failed = dposv(products[:, :3], -products[:, 3])
+    if failed:
+        return np.zeros(now.x.shape[1]), np.inf
+    weighted = solved[:, 3] + solved[:, :3] @ on_target
+    step = np.concatenate([on_target, -(weighted @ by_errors) - normals])
+    return step, float(now.costs[0] - expected @ weighted)
