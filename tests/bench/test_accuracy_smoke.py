@@ -9,8 +9,7 @@ from typer.testing import CliRunner
 from tapreach.bench import accuracy_plot
 from tapreach.bench.accuracy import run_accuracy
 from tapreach.bench.accuracy_cells import run_cell
-from tapreach.bench.accuracy_plan import Part, smoke_plan
-from tapreach.bench.accuracy_taps import normal
+from tapreach.bench.accuracy_plan import Chapter, smoke_plan
 from tapreach.bench.accuracy_trials import Cell
 from tapreach.bench.report import read_report, write_report
 from tapreach.cli.main import app
@@ -35,6 +34,7 @@ def test_every_part_is_measured(report):
         "Every setting",
         "95 % range interval",
         "Random motions",
+        "The chosen move",
         "One slipped tap among five",
         "Taps that are correlated or heavy-tailed",
     ]
@@ -58,8 +58,14 @@ def test_nothing_breaks_and_nothing_singular_gets_a_range(report):
 
 
 def test_errors_are_of_the_size_of_the_bound(report):
-    together = figures(report)["Every setting", "error over bound: all settings together"]
-    assert 0.6 < together < 1.6
+    together = figures(report)["Every setting", "error over bound: mean of 44 settings"]
+    assert 0.8 < together < 1.2
+
+
+def test_chapter_alone_is_all_that_runs():
+    alone = asyncio.run(run_accuracy(smoke_plan(SEED, Chapter.SLIPS), lambda section: None, MonotonicClock()))
+    assert [section.title for section in alone.sections] == ["One slipped tap among five"]
+    assert alone.bench == "accuracy --part slips"
 
 
 def test_report_is_kept_whole(report, tmp_path):
@@ -70,7 +76,7 @@ def test_report_is_kept_whole(report, tmp_path):
 def test_command_offers_seed_trials_and_json():
     result = CliRunner().invoke(app, ["bench", "accuracy", "--help"], catch_exceptions=False)
     assert result.exit_code == 0
-    assert all(option in result.output for option in ("--seed", "--trials", "--smoke", "--json"))
+    assert all(option in result.output for option in ("--seed", "--trials", "--part", "--smoke", "--json"))
 
 
 @pytest.mark.parametrize("wrong", [["--trials", "0"], ["--seed", "-1"], ["--jobs", "none"]])
@@ -87,6 +93,6 @@ def test_plot_without_matplotlib_says_what_is_missing(tmp_path, monkeypatch):
 def test_plot_is_a_picture(tmp_path):
     pytest.importorskip("matplotlib", reason="matplotlib is not installed: nothing to draw with")
     cell = Cell(1.0, 2, 1.0, 0.01)
-    result = run_cell((0, cell), seed=SEED, part=Part.CELLS, trials=3, taps=normal)
+    result = run_cell((0, cell), seed=SEED, trials=3, rounds=1)
     accuracy_plot.draw_settings([result], tmp_path / "new" / "settings.png")
     assert cv2.imread(str(tmp_path / "new" / "settings.png")).shape[2] == 3

@@ -13,7 +13,7 @@ from tapreach.bench.accuracy_taps import (
     heavy_tailed,
     normal,
 )
-from tapreach.bench.accuracy_trials import Cell, all_cells, draw_trials, well_defined_steps
+from tapreach.bench.accuracy_trials import Cell, all_cells, draw_trials, well_defined_drive
 from tapreach.bench.accuracy_wandering import SINGULAR, draw_motions, wandering
 from tapreach.errors import InputError
 from tapreach.estimation.bound import position_bound
@@ -40,7 +40,7 @@ def test_truth_differs_from_what_the_wheels_say_by_the_odometry_error():
     still = Cell(1.0, 2, 1e-9, 0.03)
     exact = draw_trials(Cell(1.0, 2, 1e-9, 0.0), 1, random()).pixels[0, 1]
     moved = draw_trials(still, 4000, random()).pixels[:, 1] - exact
-    turn_px = 600.0 * 0.03 * well_defined_steps(still)[0][0]
+    turn_px = 600.0 * 0.03 * well_defined_drive(still).turns[0]
     assert turn_px * 0.9 < moved[:, 0].std() < turn_px * 2.0  # the lever and the advance add to the turn
     assert draw_trials(still, 2, random()).said.std(axis=0).max() == 0.0
 

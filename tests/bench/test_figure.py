@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tapreach.bench.figure import Figure, at_least, at_most, exactly, plain
+from tapreach.bench.figure import Figure, at_least, at_most, exactly, plain, within
 
 
 @pytest.mark.parametrize(
@@ -38,3 +38,10 @@ def test_wanted_names_limit_and_unit():
 def test_plain_number_stays_near_the_value(value):
     assert abs(float(plain(value)) - value) <= max(0.0006, abs(value) * 0.01)
     assert "e" not in plain(value)
+
+
+def test_band_holds_between_its_ends():
+    figure = Figure("share", 95.0, "%", within(94.0, 96.0))
+    assert figure.holds and figure.wanted == "94 to 96 %"
+    assert not Figure("share", 93.9, "%", within(94.0, 96.0)).holds
+    assert not Figure("share", 96.1, "%", within(94.0, 96.0)).holds

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tapreach.bench.accuracy_cells import bound_of
+from tapreach.bench.accuracy_cells import experiment_of
 from tapreach.bench.accuracy_gtsam import gtsam_peers
 from tapreach.bench.accuracy_outcomes import REGION_95
 from tapreach.bench.accuracy_peers import Answer, Job, Peer, opencv, paper, tapreach, tapreach_trusting
@@ -81,7 +81,7 @@ def _compare(
     number: int, cell: Cell, peers: dict[str, Peer], plan: AccuracyPlan, clock: Clock
 ) -> dict[str, Tally]:
     drawn = draw_trials(cell, plan.comparisons, generator(plan.seed, Part.PEERS, number))
-    bound = bound_of(cell, next(drawn.sightings()), drawn)
+    bound = float(experiment_of(cell, drawn).inverse_depth_sd)
     tallies = {name: Tally([], [], []) for name in peers}
     for peer in peers.values():
         _timed(

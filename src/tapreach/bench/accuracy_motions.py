@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from functools import partial
 
 import numpy as np
@@ -11,7 +12,16 @@ from tapreach.bench.accuracy_intervals import interval_figures
 from tapreach.bench.accuracy_outcomes import Outcomes, joined, score
 from tapreach.bench.accuracy_plan import AccuracyPlan, Part, generator
 from tapreach.bench.accuracy_trials import Trials
-from tapreach.bench.accuracy_wandering import FARTHEST, NEAREST, SINGULAR, draw_motions, wandering
+from tapreach.bench.accuracy_wandering import (
+    FARTHEST,
+    NEAREST,
+    SINGULAR,
+    Motion,
+    draw_motions,
+    hardly_moving,
+    tapped_anywhere,
+    wandering,
+)
 from tapreach.bench.figure import Figure, at_least, exactly
 from tapreach.bench.report import Section
 from tapreach.bench.spread import spread
@@ -21,17 +31,30 @@ from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.estimation.range_posterior import RangePrior
 
-TASKS = 60
-"""Each has its own number of views, sigma and odometry."""
+TASKS = 200
+"""Each has its own kind of motion, number of views, sigma and odometry."""
 FLAGGED = {Status.DEGENERATE, Status.BEHIND, Status.INCONSISTENT}
+
+
+class Kind(StrEnum):
+    """What the trials of a task are."""
+
+    WANDERING = "wandering"
+    TOLD = "told the ranges"
+    ANYWHERE = "tapped anywhere"
+    TINY = "hardly moving"
+    SINGULAR = "singular"
+
+
+_TURNS = (*[Kind.WANDERING] * 4, *[Kind.TOLD] * 2, Kind.ANYWHERE, Kind.TINY, *[Kind.SINGULAR] * 2)
+"""The kinds of ten tasks in a row."""
 
 
 @dataclass
 class MotionResult:
-    """What was said of the motions of one task; is_told: which ranges the targets were drawn from."""
+    """What was said of the motions of one task."""
 
-    is_singular: bool
-    is_told: bool
+    kind: Kind
     statuses: Counter[str] = field(default_factory=Counter)
     exceptions: list[str] = field(default_factory=list)
     behind: int = 0
@@ -39,35 +62,45 @@ class MotionResult:
 
 
 def measure_motions(plan: AccuracyPlan) -> Section:
-    """Run random motions, four of five tasks wandering and one singular."""
+    """Run random motions of every kind."""
     one = partial(_run, seed=plan.seed, trials=max(1, plan.motions // TASKS))
-    results = [result for pair in spread(one, range(TASKS), plan.jobs) for result in pair]
+    results = spread(one, range(min(TASKS, plan.motions)), plan.jobs)
     return Section(
         "Random motions",
         "2 to 6 views, turns to 29°, advances to 50 cm either way, targets anywhere in the picture at 0.2 to "
-        "10 m, taps of 1 to 3 px, odometry of 1 to 3 %. Every fifth motion is singular: standing, turning "
-        "about the camera's own centre, or driving straight along the line of sight. Flagged: degenerate, "
-        "behind or inconsistent, so that no range is given. Intervals: of the motions that are "
-        "not singular, once with the estimator's own prior over ranges (0.05 to 100 m), once told the one "
-        "that the targets were drawn from.",
-        (*_safety_figures(results), *_interval_figures(results, False), *_interval_figures(results, True)),
+        "10 m, taps of 1 to 3 px, odometry of 1 to 3 %. Of ten motions two are singular: standing, turning "
+        "about the camera's own centre, or driving straight along the line of sight; one moves by less than "
+        "a micrometre; in one the taps have nothing to do with each other. Flagged: degenerate, "
+        "behind or inconsistent, so that no range is given. Intervals: of the others, four with the "
+        "estimator's own prior over ranges (0.05 to 100 m), two told the one that the targets were drawn "
+        "from.",
+        (
+            *_safety_figures(results),
+            *_interval_figures(results, Kind.WANDERING),
+            *_interval_figures(results, Kind.TOLD),
+        ),
     )
 
 
-def _run(task: int, seed: int, trials: int) -> list[MotionResult]:
+def _run(task: int, seed: int, trials: int) -> MotionResult:
     random = generator(seed, Part.MOTIONS, task)
-    kinds = list(SINGULAR.values())
-    is_singular = task % 5 == 4
-    kind = kinds[task // 5 % len(kinds)] if is_singular else wandering
+    kind = _TURNS[task % len(_TURNS)]
     views = int(random.integers(2, 7))
     pixel_sigma, odometry = random.uniform(1.0, 3.0), random.uniform(0.01, 0.03)
-    drawn = draw_motions(kind, trials, views, pixel_sigma, odometry, random)
-    estimate = partial(estimate_point, motion=OdometryNoise.per_step(odometry), with_advice=False)
-    told = partial(estimate, range_prior=RangePrior(NEAREST, FARTHEST))
-    results = [_judge(drawn, estimate, MotionResult(is_singular, is_told=False))]
-    if not is_singular:
-        results.append(_judge(drawn, told, MotionResult(is_singular, is_told=True)))
-    return results
+    drawn = draw_motions(_motion(kind, task), trials, views, pixel_sigma, odometry, random)
+    if kind is Kind.ANYWHERE:
+        drawn = tapped_anywhere(drawn, random)
+    prior = RangePrior(NEAREST, FARTHEST) if kind is Kind.TOLD else None
+    motion = OdometryNoise.per_step(odometry)
+    estimate = partial(estimate_point, motion=motion, range_prior=prior, with_advice=False)
+    return _judge(drawn, estimate, MotionResult(kind))
+
+
+def _motion(kind: Kind, task: int) -> Motion:
+    if kind is Kind.SINGULAR:
+        kinds = list(SINGULAR.values())
+        return kinds[(task // len(_TURNS) + task) % len(kinds)]
+    return hardly_moving if kind is Kind.TINY else wandering
 
 
 def _judge(
@@ -96,27 +129,29 @@ def is_behind(estimate: PointEstimate, observations: Sequence[Observation]) -> b
     if estimate.point_in_world is None:
         return False
     used = [view for i, view in enumerate(observations) if i not in estimate.rejected_views]
-    depths = [view.world_from_camera.inv().apply(estimate.point_in_world)[2] for view in used]
-    return bool(min(depths) <= 0.0)
+    cameras = [view.world_from_base.as_matrix() @ view.base_from_camera.as_matrix() for view in used]
+    return any(camera[:3, 2] @ (estimate.point_in_world - camera[:3, 3]) <= 0.0 for camera in cameras)
 
 
 def _safety_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
-    singular = sum((r.statuses for r in results if r.is_singular), Counter[str]())
-    others = sum((r.statuses for r in results if not r.is_singular and not r.is_told), Counter[str]())
+    statuses = {kind: sum((r.statuses for r in results if r.kind is kind), Counter[str]()) for kind in Kind}
+    singular, tiny = statuses[Kind.SINGULAR], statuses[Kind.TINY]
     flagged = sum(singular[status] for status in FLAGGED)
     exceptions = [text for result in results for text in result.exceptions]
-    total = singular.total() + others.total() + sum(len(r.exceptions) for r in results if not r.is_told)
+    total = sum(each.total() for each in statuses.values()) + len(exceptions)
+    of_wandering, of_singular, of_tiny, of_anywhere = (
+        _by_status(statuses[kind]) for kind in (Kind.WANDERING, Kind.SINGULAR, Kind.TINY, Kind.ANYWHERE)
+    )
+    share = 100.0 * flagged / max(singular.total(), 1)
+    behind = sum(result.behind for result in results)
     return (
-        Figure("motions", total, "", None, _by_status(others) + " where not singular"),
+        Figure("motions", total, "", None, f"wandering: {of_wandering}"),
+        Figure("singular: flagged", share, "%", at_least(100.0), of_singular),
+        Figure("singular: given two ends", singular[Status.DETERMINED], "", exactly(0)),
         Figure(
-            "singular: flagged",
-            100.0 * flagged / max(singular.total(), 1),
-            "%",
-            at_least(100.0),
-            f"of {singular.total()}: {_by_status(singular)}",
+            "hardly moving: given a range with two ends", tiny[Status.DETERMINED], "", exactly(0), of_tiny
         ),
-        Figure("singular: given a range with two ends", singular[Status.DETERMINED], "", exactly(0)),
-        Figure("answers behind a camera", sum(r.behind for r in results), "", exactly(0)),
+        Figure("answers behind a camera", behind, "", exactly(0), f"tapped anywhere: {of_anywhere}"),
         Figure("exceptions", len(exceptions), "", exactly(0), exceptions[0] if exceptions else ""),
     )
 
@@ -125,8 +160,8 @@ def _by_status(statuses: Counter[str]) -> str:
     return ", ".join(f"{count} {str(status).replace('_', ' ')}" for status, count in statuses.most_common())
 
 
-def _interval_figures(results: list[MotionResult], is_told: bool) -> tuple[Figure, ...]:
-    chosen = [r for r in results if not r.is_singular and r.is_told == is_told]
-    figures = interval_figures(joined([part for result in chosen for part in result.outcomes]))
-    prefix = "told the ranges: " if is_told else ""
-    return tuple(replace(figure, name=prefix + figure.name) for figure in figures)
+def _interval_figures(results: list[MotionResult], kind: Kind) -> tuple[Figure, ...]:
+    parts = [part for result in results if result.kind is kind for part in result.outcomes]
+    if not parts:
+        return ()
+    return tuple(replace(figure, name=f"{kind}: {figure.name}") for figure in interval_figures(joined(parts)))

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from tapreach.bench.accuracy_trials import Trials
 from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.motion_prior import Motion
 from tapreach.estimation.point_estimate import PointEstimate
+from tapreach.estimation.tap_noise import TapNoise
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.gaussian import chi2_limit
 
@@ -47,6 +49,10 @@ class Outcomes:
         """(m,) True where an interval was given and holds the truth."""
         return np.asarray((self.nearest <= self.ranges) & (self.ranges <= self.farthest))
 
+    def first(self, count: int) -> "Outcomes":
+        """Return the first trials only."""
+        return Outcomes(*(getattr(self, each.name)[:count] for each in fields(self)))
+
     def region_coverage(self) -> float:
         """Return the share of answers whose 95 % region holds the truth."""
         return mean_or_nan(self.nees[self.is_answered] <= REGION_95)
@@ -59,9 +65,9 @@ class Outcomes:
         """Return NEES/3: 1 where the covariance is what the errors are."""
         return mean_or_nan(self.nees[self.is_answered]) / 3.0
 
-    def error_over(self, sd: float) -> float:
-        """Return the root mean square error of the inverse depth over `sd` [1/m]."""
-        return math.sqrt(mean_or_nan(self.errors[self.is_answered, 2] ** 2)) / sd
+    def error_over(self, sd: float | FloatArray) -> float:
+        """Return the root mean square error of the inverse depth over `sd` [1/m], one or (m,)."""
+        return math.sqrt(mean_or_nan(((self.errors[:, 2] / sd) ** 2)[self.is_answered]))
 
 
 def mean_or_nan(values: npt.NDArray[Any]) -> float:
@@ -69,9 +75,10 @@ def mean_or_nan(values: npt.NDArray[Any]) -> float:
     return float(values.mean()) if len(values) else math.nan
 
 
-def estimate_all(trials: Trials, motion: Motion) -> Outcomes:
+def estimate_all(trials: Trials, motion: Motion, tap_noise: TapNoise | None = None) -> Outcomes:
     """Estimate every trial and score it."""
-    estimates = [estimate_point(views, motion, with_advice=False) for views in trials.sightings()]
+    estimate = partial(estimate_point, motion=motion, tap_noise=tap_noise, with_advice=False)
+    estimates = [estimate(views) for views in trials.sightings()]
     return score(trials, estimates)
 
 

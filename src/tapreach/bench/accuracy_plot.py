@@ -2,46 +2,30 @@
 
 import importlib
 import importlib.util
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from tapreach.bench.accuracy_cells import CellResult
+from tapreach.bench.accuracy_judged import CellFigures, Judged
 from tapreach.bench.accuracy_trials import VIEWS
 from tapreach.errors import ConfigError
 
 
 @dataclass(frozen=True)
 class _Panel:
-    """value and standard error of a setting, and the band that is wanted."""
+    """A figure of a setting, and in what unit it is drawn."""
 
     title: str
-    value: Callable[[CellResult], float]
-    chance: Callable[[CellResult], float]
-    wanted: tuple[float, float]
+    of: Callable[[CellFigures], Judged]
+    unit_per: float = 1.0
 
 
 _PANELS = (
-    _Panel(
-        "error of 1/Z over the bound",
-        lambda result: result.error_over_bound,
-        lambda result: result.error_over_bound / math.sqrt(2.0 * max(result.answers, 1)),
-        (1.0, 1.03),
-    ),
-    _Panel(
-        "95 % regions that hold the truth [%]",
-        lambda result: 100.0 * result.outcomes.region_coverage(),
-        lambda result: 100.0 * math.sqrt(0.95 * 0.05 / max(result.answers, 1)),
-        (94.0, 96.0),
-    ),
-    _Panel(
-        "NEES/3",
-        lambda result: result.outcomes.consistency(),
-        lambda result: math.sqrt(2.0 / (3.0 * max(result.answers, 1))),
-        (0.95, 1.05),
-    ),
+    _Panel("error of 1/Z over the bound", lambda figures: figures.error),
+    _Panel("95 % regions that hold the truth [%]", lambda figures: figures.region, 100.0),
+    _Panel("NEES/3", lambda figures: figures.consistency),
 )
 
 
@@ -64,13 +48,16 @@ def draw_settings(results: Sequence[CellResult], path: Path) -> None:
 
 
 def _draw(axes: Any, panel: _Panel, results: Sequence[CellResult]) -> None:
-    axes.axhspan(*panel.wanted, color="tab:green", alpha=0.15, label="wanted")
+    wanted = panel.of(results[0].figures).wanted
+    low, high = (panel.unit_per * end for end in (wanted.low, wanted.high))
+    axes.axhspan(low or 0.98, high, color="tab:green", alpha=0.15, label="wanted")
     for views in VIEWS:
         of_views = [result for result in results if result.cell.views == views]
+        judged = [panel.of(result.figures) for result in of_views]
         axes.errorbar(
             [result.relative_sd for result in of_views],
-            [panel.value(result) for result in of_views],
-            [panel.chance(result) for result in of_views],
+            [panel.unit_per * each.value for each in judged],
+            [panel.unit_per * each.chance for each in judged],
             fmt="o",
             markersize=4,
             label=f"{views} views",

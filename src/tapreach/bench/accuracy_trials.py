@@ -1,7 +1,7 @@
 """Trials: what a robot says it did and saw, and the truth that only the scoring looks at."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -25,7 +25,6 @@ from tapreach.estimation.observation import Observation
 from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
-from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import camera_mount
 
 DEPTHS, VIEWS, SIGMAS_PX, ODOMETRIES = (0.5, 1.0, 2.5, 5.0), (2, 5, 20), (1.0, 3.0), (0.01, 0.03)
@@ -66,6 +65,14 @@ def all_cells() -> tuple[Cell, ...]:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """What the wheels say: turns [rad] and then advances [m], (n - 1,) each, one of either in every step."""
+
+    turns: FloatArray
+    advances: FloatArray
+
+
+@dataclass(frozen=True)
 class Trials:
     """m trials of n views. said (m, n, 3): poses x, y [m], heading [rad] by odometry. pixels (m, n, 2).
 
@@ -78,6 +85,8 @@ class Trials:
     pixel_sigma: float
     targets: FloatArray
     lever: FloatArray = field(default_factory=LEVER.copy)
+    chance: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    """(m, 2n + 2(n - 1)): what went wrong, in sigmas: of taps, turns and advances. Of cells only."""
 
     @property
     def ranges(self) -> FloatArray:
@@ -86,46 +95,76 @@ class Trials:
 
     def chosen(self, numbers: npt.NDArray[np.intp]) -> "Trials":
         """Return only the trials of these numbers."""
-        return replace(
-            self, said=self.said[numbers], pixels=self.pixels[numbers], targets=self.targets[numbers]
+        chance = self.chance[numbers] if len(self.chance) else self.chance
+        return Trials(
+            self.said[numbers],
+            self.pixels[numbers],
+            self.pixel_sigma,
+            self.targets[numbers],
+            self.lever,
+            chance,
         )
 
     def sightings(self) -> Iterator[list[Observation]]:
         """Yield what the estimator gets of each trial."""
         mount = camera_mount(self.lever, PITCH)
-        for poses, pixels in zip(self.said.tolist(), self.pixels.tolist(), strict=True):
+        for poses, pixels in zip(self.said, self.pixels.tolist(), strict=True):
             yield [
-                Observation(Pixel(u, v), self.pixel_sigma, CAMERA, _base_at(*pose), mount)
-                for pose, (u, v) in zip(poses, pixels, strict=True)
+                Observation(Pixel(u, v), self.pixel_sigma, CAMERA, base, mount)
+                for base, (u, v) in zip(_bases_at(poses.tobytes()), pixels, strict=True)
             ]
 
 
-@lru_cache(maxsize=256)
-def _base_at(x: float, y: float, heading: float) -> RigidTransform:
-    return PlanarPose(x, y, heading).to_rigid()
+@lru_cache(maxsize=4)
+def _bases_at(poses: bytes) -> tuple[RigidTransform, ...]:
+    """Return world_from_base for poses (n, 3); in a setting they are the same in all trials."""
+    x, y, heading = np.frombuffer(poses).reshape(-1, 3).T
+    matrices = np.tile(np.eye(4), (len(x), 1, 1))
+    c, s = np.cos(heading), np.sin(heading)
+    matrices[:, 0, 0] = matrices[:, 1, 1] = c
+    matrices[:, 1, 0], matrices[:, 0, 1] = s, -s
+    matrices[:, 0, 3], matrices[:, 1, 3] = x, y
+    return tuple(RigidTransform.from_matrix(matrices))
 
 
-def well_defined_steps(cell: Cell) -> tuple[FloatArray, FloatArray]:
-    """Return turns [rad] and advances [m], (n - 1,): a turn to the left and then straight on, evenly."""
+def well_defined_drive(cell: Cell) -> Drive:
+    """Return a turn to the left and then straight on, in even steps."""
     steps = cell.views - 1
     turns = np.zeros(steps)
     turns[0] = TURN
-    return turns, np.full(steps, min(ADVANCES[cell.views], 0.4 * cell.depth) / steps)
+    return Drive(turns, np.full(steps, min(ADVANCES[cell.views], 0.4 * cell.depth) / steps))
 
 
-def draw_trials(cell: Cell, count: int, random: np.random.Generator, taps: Taps = normal) -> Trials:
+def draw_trials(
+    cell: Cell,
+    count: int,
+    random: np.random.Generator,
+    taps: Taps = normal,
+    *,
+    drive: Drive | None = None,
+    bearing: FloatArray = BEARING,
+) -> Trials:
     """Return trials in which odometry and taps err by chance; the wheels say the same in all.
 
-    Raises InputError where a target would leave the picture.
+    drive: instead of `well_defined_drive`. bearing (2,): of the target. Raises InputError
+    where a target would leave the picture.
     """
-    turns, advances = (np.tile(said, (count, 1)) for said in well_defined_steps(cell))
-    true_turns = turns * (1.0 + cell.odometry * random.normal(size=turns.shape))
-    true_advances = advances * (1.0 + cell.odometry * random.normal(size=advances.shape))
-    bearings = np.tile(BEARING, (count, 1))
+    drive = drive or well_defined_drive(cell)
+    turns, advances = (np.tile(said, (count, 1)) for said in (drive.turns, drive.advances))
+    turn_errors, advance_errors = (random.normal(size=turns.shape) for _ in range(2))
+    bearings = np.tile(bearing, (count, 1))
     points = target_at(bearings, np.full(count, cell.depth))
-    seen = project(points_in_cameras(poses_after(true_turns, true_advances), points))
+    poses = poses_after(
+        turns * (1.0 + cell.odometry * turn_errors), advances * (1.0 + cell.odometry * advance_errors)
+    )
+    seen = project(points_in_cameras(poses, points))
     if not np.all(is_in_picture(seen)):
         raise InputError(f"the target leaves the picture in the setting {cell}")
-    pixels = onto_picture(seen + cell.pixel_sigma * taps(random, count, cell.views))
-    targets = np.concatenate([bearings, np.full((count, 1), 1.0 / cell.depth)], axis=1)
-    return Trials(poses_after(turns, advances), pixels, cell.pixel_sigma, targets)
+    tap_errors = taps(random, count, cell.views)
+    return Trials(
+        poses_after(turns, advances),
+        onto_picture(seen + cell.pixel_sigma * tap_errors),
+        cell.pixel_sigma,
+        np.concatenate([bearings, np.full((count, 1), 1.0 / cell.depth)], axis=1),
+        chance=np.concatenate([tap_errors.reshape(count, -1), turn_errors, advance_errors], axis=1),
+    )

@@ -1,7 +1,7 @@
 """Trials of random motions, and of motions that cannot tell the depth."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,7 +39,7 @@ class Steps:
     lever: FloatArray
 
 
-Kind = Callable[[np.random.Generator, int, int], Steps]
+Motion = Callable[[np.random.Generator, int, int], Steps]
 """From generator, trials m and views n."""
 
 
@@ -77,7 +77,16 @@ def along_the_line_of_sight(random: np.random.Generator, trials: int, views: int
     return Steps(np.zeros_like(advances), advances, bearings, depths, LEVER)
 
 
-SINGULAR: dict[str, Kind] = {
+def hardly_moving(random: np.random.Generator, trials: int, views: int) -> Steps:
+    """A nanometre to a micrometre, turning as little: no better than not at all."""
+    shape = (trials, views - 1)
+    size = 10.0 ** random.uniform(-9.0, -6.0, (trials, 1)) / (views - 1)
+    advances = size * random.uniform(-1.0, 1.0, shape)
+    turns = size * random.uniform(-1.0, 1.0, shape)
+    return Steps(turns, advances, _bearings(random, trials), _ranges(random, trials), LEVER)
+
+
+SINGULAR: dict[str, Motion] = {
     "standing": standing,
     "turning about the camera": turning_about_the_camera,
     "along the line of sight": along_the_line_of_sight,
@@ -85,7 +94,7 @@ SINGULAR: dict[str, Kind] = {
 
 
 def draw_motions(
-    kind: Kind, trials: int, views: int, pixel_sigma: float, odometry: float, random: np.random.Generator
+    kind: Motion, trials: int, views: int, pixel_sigma: float, odometry: float, random: np.random.Generator
 ) -> Trials:
     """Return the trials; motions that lose the target are drawn again."""
     said: list[FloatArray] = []
@@ -99,6 +108,12 @@ def draw_motions(
         targets.append(np.column_stack([steps.bearings, 1.0 / steps.depths])[is_seen])
     drawn = [np.concatenate(parts)[:trials] for parts in (said, pixels, targets)]
     return Trials(drawn[0], drawn[1], pixel_sigma, drawn[2], steps.lever)
+
+
+def tapped_anywhere(trials: Trials, random: np.random.Generator) -> Trials:
+    """Return the trials with taps that have nothing to do with each other: many lines of sight diverge."""
+    pixels = random.uniform([0.0, 0.0], [WIDTH - 1.0, HEIGHT - 1.0], trials.pixels.shape)
+    return replace(trials, pixels=pixels)
 
 
 def _sighted(steps: Steps, odometry: float, random: np.random.Generator) -> tuple[FloatArray, FloatArray]:

@@ -26,6 +26,21 @@ class Limit:
         return f"{self.sense} {plain(self.value)}"
 
 
+@dataclass(frozen=True)
+class Band:
+    """What is wanted of a figure: from `low` to `high`, both included."""
+
+    low: float
+    high: float
+
+    def holds(self, value: float) -> bool:
+        """Tell whether `value` lies in the band."""
+        return self.low <= value <= self.high
+
+    def __str__(self) -> str:
+        return f"{plain(self.low)} to {plain(self.high)}"
+
+
 def at_most(value: float) -> Limit:
     """Return the limit "no more than `value`"."""
     return Limit("≤", value)
@@ -41,6 +56,11 @@ def exactly(value: float) -> Limit:
     return Limit("=", value)
 
 
+def within(low: float, high: float) -> Band:
+    """Return the limit "from `low` to `high`"."""
+    return Band(low, high)
+
+
 @dataclass(frozen=True)
 class Figure:
     """A measured value. `value` None: could not be measured here, and `note` says why.
@@ -52,7 +72,7 @@ class Figure:
     name: str
     value: float | None
     unit: str = ""
-    limit: Limit | None = None
+    limit: Limit | Band | None = None
     note: str = ""
 
     @property

@@ -14,7 +14,7 @@ from tapreach.bench import control as control_bench
 from tapreach.bench import locate as locate_bench
 from tapreach.bench import locate_plan
 from tapreach.bench import video as video_bench
-from tapreach.bench.accuracy_plan import AccuracyPlan, smoke_plan
+from tapreach.bench.accuracy_plan import AccuracyPlan, Chapter, smoke_plan
 from tapreach.bench.document import benchmarks_document
 from tapreach.bench.report import Report, Section, write_report
 from tapreach.bench.table import grid_table, print_closing, section_table
@@ -57,9 +57,10 @@ def control(
 @bench.command()
 def accuracy(
     smoke: Smoke = False,
-    trials: Annotated[int, typer.Option(min=2, help="in each of 48 settings")] = 400,
-    motions: Annotated[int, typer.Option(min=30, help="random ones, a fifth of them singular")] = 4000,
-    comparisons: Annotated[int, typer.Option(min=1, help="trials in each setting beside the peers")] = 100,
+    trials: Annotated[int, typer.Option(min=2, help="in each of 48 settings, more where needed")] = 500,
+    motions: Annotated[int, typer.Option(min=30, help="random ones, a fifth of them singular")] = 100_000,
+    comparisons: Annotated[int, typer.Option(min=1, help="trials in each setting beside the peers")] = 200,
+    part: Annotated[Chapter | None, typer.Option(help="run this one alone")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="processes, but for what is timed")] = 1,
     seed: Annotated[
         int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
@@ -69,9 +70,9 @@ def accuracy(
 ) -> None:
     """The estimator in simulation against its bound, its own regions, and other libraries."""
     used = secrets.randbits(32) if seed is None else seed
-    plan = AccuracyPlan(used, trials, motions, comparisons, jobs, plot=plot)
+    plan = AccuracyPlan(used, trials, motions, comparisons, jobs=jobs, plot=plot, chapter=part)
     if smoke:
-        plan = smoke_plan(used)
+        plan = smoke_plan(used, part)
     Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: accuracy_bench.run_accuracy(plan, on_section, MonotonicClock()), json)
 
@@ -121,6 +122,6 @@ def _run(
 
     report = asyncio.run(measure(show))
     print_closing(report, console)
-    path = json or Path("out") / "bench" / f"{report.bench}.json"
+    path = json or Path("out") / "bench" / f"{report.bench.replace(' --part ', '-')}.json"
     write_report(report, path)
     console.print(f"wrote {path}", highlight=False)
