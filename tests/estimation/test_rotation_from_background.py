@@ -56,7 +56,9 @@ def trials(step, mount_name="ahead", surface=room, outliers=0.0):
     rows, statuses = [], []
     for _ in range(TRIALS):
         true, excess = erring(rng, nominal)
-        found = rotation_from_background(*seen(rng, true, mount, surface(rng, 900), outliers), CAMERA, prior)
+        found = rotation_from_background(
+            *seen(rng, true, mount, surface(rng, 900), outliers), CAMERA, prior, 0.0
+        )
         true_rotation = (mount.inv() * true.to_rigid() * mount).rotation
         error = (found.first_from_second.rotation.inv() * true_rotation).as_rotvec()
         nees = float(error @ np.linalg.solve(found.covariance[3:, 3:], error)) / 3.0
@@ -153,7 +155,7 @@ def test_places_all_in_one_spot_do_not_show_the_turn_of_a_drive():
     nominal = PlanarPose().after(DRIVE)
     spot = np.array([1.5, 0.2, 0.2]) + rng.uniform(-0.02, 0.02, (60, 3))
     found = rotation_from_background(
-        *seen(rng, nominal, MOUNT, spot), CAMERA, camera_step(nominal, NOISE, MOUNT)
+        *seen(rng, nominal, MOUNT, spot), CAMERA, camera_step(nominal, NOISE, MOUNT), 0.0
     )
     assert found.turn_sd > 5.0 * np.median(trials(DRIVE)[2])
 

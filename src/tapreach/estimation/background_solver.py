@@ -42,9 +42,24 @@ def fit_step(pairs: PointPairs, step: CameraStep) -> Fit:
     and things that move, make it flat there. So its spread is taken from the cost along the valley.
     """
     normals, noise = _robust(pairs, step)
-    fit = _refined(pairs, step, normals, noise)
-    hidden = 1.0 + _HIDDEN_OUTLIERS * float(1.0 - fit.is_used.mean())
-    return _spread_along_valley(replace(fit, covariance=hidden * fit.covariance), pairs, step)
+    fit = _weighed(_refined(pairs, step, normals, noise), pairs, step)
+    return _spread_along_valley(fit, pairs, step)
+
+
+def _weighed(fit: Fit, pairs: PointPairs, step: CameraStep) -> Fit:
+    """Return the fit with pairs that count for what they are worth beside the prior."""
+    weights = fit.is_used / (fit.noise_px**2 * _dependence(fit))
+    normals = fit.normals
+    for _ in range(_FINAL_STEPS):
+        residuals, jacobian = residuals_at(pairs, step, normals)
+        normals = _improved(residuals, jacobian, weights, normals)
+    _, jacobian = residuals_at(pairs, step, normals)
+    return replace(fit, normals=normals, covariance=_inverse(_information(jacobian, weights)))
+
+
+def _dependence(fit: Fit) -> float:
+    """Return by how much the variance of what the pairs say together exceeds that of independent ones."""
+    return 1.0 + _HIDDEN_OUTLIERS * float(1.0 - fit.is_used.mean())
 
 
 def _robust(pairs: PointPairs, step: CameraStep) -> tuple[FloatArray, float]:
@@ -75,7 +90,7 @@ def _spread_along_valley(fit: Fit, pairs: PointPairs, step: CameraStep) -> Fit:
     by_turn = step.turn_axis @ step.by_normal[3:]
     along = fit.covariance @ by_turn / max(float(np.sqrt(by_turn @ fit.covariance @ by_turn)), 1e-12)
     places = fit.normals + np.outer(_SIGMAS_ASIDE, along)
-    costs = _truncated_costs(pairs, step, places, fit.noise_px)
+    costs = _truncated_costs(pairs, step, places, fit)
     weights = np.exp(-0.5 * (costs - costs.min()))
     weights /= weights.sum()
     mean = float(weights @ _SIGMAS_ASIDE)
@@ -87,7 +102,7 @@ def _spread_along_valley(fit: Fit, pairs: PointPairs, step: CameraStep) -> Fit:
     )
 
 
-def _truncated_costs(pairs: PointPairs, step: CameraStep, places: FloatArray, noise: float) -> FloatArray:
+def _truncated_costs(pairs: PointPairs, step: CameraStep, places: FloatArray, fit: Fit) -> FloatArray:
     """Return the cost (m,) of normals (m, k), no pair counting for more than the gate."""
     rotations, translations = step.moved(places)
     if _has_parallax(step):
@@ -95,7 +110,8 @@ def _truncated_costs(pairs: PointPairs, step: CameraStep, places: FloatArray, no
     else:
         apart = [turn_alone(pairs, rotation)[0] for rotation in rotations]
         squared = np.max(np.square(apart), axis=2).T
-    return np.asarray(np.sum(np.minimum(squared / noise**2, _GATE**2), axis=0) + np.sum(places**2, axis=1))
+    misfit = np.sum(np.minimum(squared / fit.noise_px**2, _GATE**2), axis=0)
+    return np.asarray(misfit / _dependence(fit) + np.sum(places**2, axis=1))
 
 
 def residuals_at(pairs: PointPairs, step: CameraStep, normals: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -64,7 +64,7 @@ class CameraStep:
         return replace(self, by_wheels=self.second_camera_from_base @ planar)
 
     def moved(self, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return rotations (..., 3, 3) and translations (..., 3) of the step with errors `normals` (..., k)."""
+        """Return rotations (..., 3, 3) and translations (..., 3) of the step with errors `normals`."""
         errors = normals @ self.by_normal.T
         back, _ = backward_rotations(errors[..., 3:])
         translations = self.translation + errors[..., :3] @ self.rotation.T

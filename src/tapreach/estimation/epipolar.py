@@ -32,8 +32,8 @@ class PointPairs:
 
     @cached_property
     def by_essential(self) -> FloatArray:
-        """(5 n, 9): what multiplies the nine elements of an essential matrix E to give the gap xᵀ E y of every
-        pair, then the four slopes of (8) by the pixels [1/px].
+        """(5 n, 9): what makes of the nine elements of an essential matrix E the gap xᵀ E y of every pair,
+        then the four slopes of (8) by the pixels [1/px].
         """
         first, second = self.first, self.second
         rows = np.zeros((5, len(first), 3, 3))

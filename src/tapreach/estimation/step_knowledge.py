@@ -6,7 +6,7 @@ the wheels' and the mount's own priors divided out, so that any number of steps 
 (docs/estimation.md, 11).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from tapreach.geometry.finite import FloatArray
 
 PLANAR = 3
 """Errors of a step of the base come first: x, y [m], heading [rad], perturbing on the right."""
+HEADING = 2
 KNOWN = PLANAR + 6
 """Then those of the mount base_from_camera: (translation, rotation), perturbing on the right."""
 _PLANAR_ROWS = [0, 1, 5]
@@ -52,6 +53,20 @@ def step_knowledge(
     information = to_normals.T @ learnt @ to_normals
     vector = to_normals.T @ (mean + learnt @ mean)
     return StepKnowledge((information + information.T) / 2.0, vector, has_slipped)
+
+
+def swayed(knowledge: StepKnowledge, sigma: float) -> StepKnowledge:
+    """Return what is known when the camera may also have turned by itself, sigma [rad], about the vertical.
+    """
+    if sigma == 0.0:
+        return knowledge
+    on_heading = knowledge.information[:, HEADING]
+    share = on_heading / (1.0 / sigma**2 + on_heading[HEADING])
+    return replace(
+        knowledge,
+        information=knowledge.information - np.outer(share, on_heading),
+        vector=knowledge.vector - share * knowledge.vector[HEADING],
+    )
 
 
 def _errors_by_normals(step: CameraStep) -> FloatArray:
