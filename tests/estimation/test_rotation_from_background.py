@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from drive import CAMERA, CENTRED_MOUNT, MOUNT
+from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
 from tapreach.estimation.camera_step import camera_step
@@ -27,10 +28,12 @@ def wall(rng, count):
     return rng.uniform([2.0, -2.0, 0.0], [2.0, 2.0, 1.5], (count, 3))
 
 
-def seen(rng, true, mount, points, outliers=0.0, sigma=SIGMA):
-    """Pixels of what both cameras see; a share of it jumped elsewhere."""
+def seen(rng, true, mount, points, outliers=0.0, sigma=SIGMA, sway=0.0):
+    """Pixels of what both cameras see; a share of it jumped elsewhere, the second camera swayed [rad]."""
     first = CAMERA.project(mount.inv().apply(points))
-    second = CAMERA.project((true.to_rigid() * mount).inv().apply(points))
+    turned = PlanarPose(heading=sway).to_rigid().rotation * mount.rotation
+    swayed = RigidTransform.from_components(mount.translation, turned)
+    second = CAMERA.project((true.to_rigid() * swayed).inv().apply(points))
     in_both = first.is_inside & second.is_inside
     noise = sigma * rng.normal(size=(2, int(in_both.sum()), 2))
     before, now = first.pixels[in_both] + noise[0], second.pixels[in_both] + noise[1]
@@ -92,6 +95,18 @@ def test_wall_driven_at_is_less_certain_and_says_so():
     assert np.std(error) < 0.3 * np.std(wheels)
     assert np.median(sd) > 2.0 * np.median(trials(DRIVE)[2])
     assert np.median(np.abs(error / sd)) < 1.2
+
+
+def test_what_all_pairs_have_wrong_in_common_is_in_the_sigma():
+    rng = np.random.default_rng(8)
+    nominal, squares = PlanarPose().after(DRIVE), []
+    prior = camera_step(nominal, NOISE, MOUNT)
+    for sway in 0.003 * rng.normal(size=TRIALS):
+        true, excess = erring(rng, nominal)
+        pixels = seen(rng, true, MOUNT, room(rng, 900), sway=sway)
+        found = rotation_from_background(*pixels, CAMERA, prior, 0.003)
+        squares.append(((found.excess_turn - excess) / found.turn_sd) ** 2)
+    assert 0.6 < np.mean(squares) < 1.5
 
 
 def test_third_of_pairs_that_move_on_their_own_does_little_harm():
