@@ -280,3 +280,12 @@ def test_random_motions_never_raise_and_never_put_a_point_behind(seed):
         assert np.all(np.linalg.eigvalsh(estimate.point_cov_in_world) > 0.0)
     else:
         assert estimate.point_in_world is None
+
+
+def test_view_that_alone_moved_is_never_left_out():
+    poses = poses_along([PlanarStep(0.0, 0.0)] * 4 + [PlanarStep(0.1, 0.2)])
+    *still, moved = observed([poses[0], *poses], np.array([1.2, 0.05, 0.1]))
+    off = Pixel(moved.pixel.u, moved.pixel.v - 60.0)
+    slipped = Observation(off, 1.0, CAMERA, moved.world_from_base, MOUNT)
+    estimate = estimate_point([*still, slipped], ONE_PERCENT)
+    assert len(still) not in estimate.rejected_views

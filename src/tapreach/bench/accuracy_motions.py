@@ -1,5 +1,6 @@
 """Random motions, a fifth of them singular: what is said of them, and whether anything breaks."""
 
+import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -110,8 +111,10 @@ def _judge(
     kept: list[int] = []
     for number, observations in enumerate(drawn.sightings()):
         try:
-            estimate = ask(observations)
-        except Exception as error:  # whatever it is, it is what this counts
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                estimate = ask(observations)
+        except Exception as error:  # whatever it is, warnings too, it is what this counts
             result.exceptions.append(f"{type(error).__name__}: {error}")
             continue
         result.statuses[estimate.status] += 1
@@ -152,7 +155,9 @@ def _safety_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
             "hardly moving: given a range with two ends", tiny[Status.DETERMINED], "", exactly(0), of_tiny
         ),
         Figure("answers behind a camera", behind, "", exactly(0), f"tapped anywhere: {of_anywhere}"),
-        Figure("exceptions", len(exceptions), "", exactly(0), exceptions[0] if exceptions else ""),
+        Figure(
+            "exceptions and warnings", len(exceptions), "", exactly(0), exceptions[0] if exceptions else ""
+        ),
     )
 
 

@@ -14,6 +14,7 @@ from tapreach.geometry.finite import FloatArray
 # Inverse depths to start from, in units of 1 over the baseline.
 _STARTS = np.array([0.0, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6, 1.0, 2.0, 4.0])
 
+_SHORT_BASELINE = 1e-6  # [m]; cameras nearer to each other than this show the same
 _CLEAR = 3.0  # sigmas from infinity, and of the squared residuals above their mean
 
 
@@ -35,10 +36,13 @@ class Solution:
 
 
 def solve(model: ViewModel) -> Solution | None:
-    """Return the best minimum over several starts in depth; None where no depth has it before all cameras.
+    """Return the best minimum over several starts in depth; None where no depth has it before all cameras, and
+    where the cameras used have all stood in one place.
 
     Where the lines of sight nearly meet well before infinity there is but one, found at once.
     """
+    if model.baseline < _SHORT_BASELINE:
+        return None
     near = _at_crossing(model)
     if near is not None:
         return near
