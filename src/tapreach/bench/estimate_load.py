@@ -13,6 +13,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import estimate
 from tapreach.tasks.following import close_track, follow, open_track
 from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.target_watch import Shot
 from tapreach.tasks.task import Compute
 
 POINT_IN_WORLD = (1.2, 0.15, 0.1)
@@ -33,12 +34,18 @@ async def keep_estimating(
     seen = sightings(description, seed)
     size = description.camera.model().size
     while True:
-        await compute.call(open_track, _KEY, jpegs[0], 0.5 * size.width, 0.5 * size.height)
-        for jpeg in itertools.islice(itertools.cycle(jpegs), 1, FRAMES):
-            await compute.call(follow, _KEY, jpeg)
+        middle = Pixel(0.5 * size.width, 0.5 * size.height)
+        await compute.call(open_track, _KEY, _shot(0, jpegs[0]), middle, description)
+        for index, jpeg in enumerate(itertools.islice(itertools.cycle(jpegs), 1, FRAMES), start=1):
+            await compute.call(follow, _KEY, _shot(index, jpeg))
             await compute.call(estimate, seen, description, True)
             on_estimate()
         await compute.call(close_track, _KEY)
+
+
+def _shot(index: int, jpeg: bytes) -> Shot:
+    """Return a frame of a robot that drives ahead by a centimetre a frame, so that the background is asked."""
+    return Shot(index, index * 33 * MS, jpeg, PlanarPose(0.01 * index), 0.0)
 
 
 def sightings(description: RobotDescription, seed: int) -> list[Sighting]:
