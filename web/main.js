@@ -90,7 +90,8 @@ function on(source, name, listener) {
 function drawPlan() {
   const { state, welcome } = situation.facts;
   if (!state?.odometry || !welcome || byId("card").hidden) return;
-  plan.draw(state.odometry, targets.all(), Math.atan(welcome.camera.width / 2 / welcome.camera.fx));
+  const halfView = Math.atan(welcome.camera.width / 2 / welcome.camera.fx);
+  plan.draw(state.odometry, targets.all(), halfView, taskPanel.move);
 }
 
 function joinControl() {
@@ -118,6 +119,10 @@ function joinControl() {
     drawPlan();
   });
   on(control, "task", (/** @type {import("./net/messages.js").TaskView} */ task) => taskPanel.show(task));
+  on(control, "move", (/** @type {import("./net/messages.js").MoveView} */ move) => {
+    taskPanel.showMove(move);
+    drawPlan();
+  });
   on(control, "target", (/** @type {import("./net/messages.js").TargetView} */ target) => targets.put(target));
   on(control, "target_gone", (/** @type {import("./net/messages.js").TargetGone} */ gone) => targets.remove(gone.target_id));
   on(control, "guide", (/** @type {import("./net/messages.js").GuideView} */ view) => guide.show(view));

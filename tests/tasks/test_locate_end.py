@@ -94,7 +94,10 @@ def test_further_moves_must_promise_and_keep() -> None:
     ("end", "words"),
     [
         (End.REACHED, "known to 2 %, 3 % was wanted"),
-        (End.NO_GAIN, "known to 2 %; more motion would not help much. Adviser: back 1 m"),
+        (
+            End.NO_GAIN,
+            "known to 2 %; the 0.30 m that it may still drive would not help much. Adviser: back 1 m",
+        ),
         (End.WAY_USED_UP, "the way it may drive is used up. Adviser: back 1 m"),
         (End.NO_MOVE, "no further move keeps it in the picture. Adviser: back 1 m"),
         (End.LOST, "lost on the way (it is hidden), from the views before"),
@@ -105,16 +108,17 @@ def test_closing_sentence_says_what_and_why(end: End, words: str) -> None:
     target = Target(
         1, TargetSource.LOCATE, "determined", "", "back 1 m", 1, 0.0, 0.0, None, None, 1.234, (1.2, 1.3)
     )
-    sentence = closing_sentence(target, estimate, end, 0.03, "it is hidden")
+    sentence = closing_sentence(target, estimate, end, 0.03, 0.3, "it is hidden")
     assert sentence.startswith("1.23 m away (95 %: 1.20 to 1.30 m)")
     assert words in sentence
 
 
-def test_planned_move_tells_way_and_expectation_in_metres_and_percent() -> None:
+def test_planned_move_tells_its_way_and_what_it_expects() -> None:
     move = PlannedMove.of(choice(0.014), PlanarPose())
-    assert move.in_words == "turning 11° left, then driving 0.30 m forward; expects ±2.1 cm, 1.4 %"
+    assert move.in_words == "turning 11° left, then driving 0.30 m forward"
+    assert (move.expected_sd, move.expected_relative_sd) == pytest.approx((0.021, 0.014))
     back = PlannedMove(PlanarPose(), PlanarStep(0.0, -0.1), 0.02, 0.01)
-    assert back.in_words == "driving 0.10 m back; expects ±2.0 cm, 1.0 %"
+    assert back.in_words == "driving 0.10 m back"
 
 
 def test_tracks_run_beside_the_way_and_the_body_stands_at_its_end() -> None:

@@ -57,6 +57,7 @@ def first_state() -> Json:
         "health": "running",
         "health_reason": "",
         "viewers": 1,
+        "overruns": 0,
     }
 
 
@@ -68,6 +69,7 @@ class ProtocolServer:
         self.background = room(*size)
         self.state = first_state()
         self.markers: list[object] = []
+        self.path: list[object] = []
         self.base = (0.0, 0.0, 0.0)
         self.sends_frames = True
         self.refuses = False
@@ -279,7 +281,7 @@ class ProtocolServer:
         jpeg = stamped_jpeg(self.background, frame_id)
         height, width = self.background.shape[:2]
         captured_ns = time.monotonic_ns() - self.capture_delay_ns
-        return video_message(frame_id, captured_ns, jpeg, (width, height), self.markers, self.base)
+        return video_message(frame_id, captured_ns, jpeg, (width, height), self.markers, self.base, self.path)
 
     async def _list_captures(self, _: Request) -> Response:
         if self.refuses:

@@ -46,8 +46,9 @@ def video_message(
     size: tuple[int, int],
     markers: list[object],
     base: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    path: list[object] | None = None,
 ) -> bytes:
     """Return a message of the video socket."""
-    meta = json.dumps({"base": base, "markers": markers}).encode()
+    meta = json.dumps({"base": base, "markers": markers} | ({"path": path} if path else {})).encode()
     header = HEADER.pack(b"TRV1", frame_id, captured_ns, captured_ns, size[0], size[1], len(meta))
     return header + meta + jpeg

@@ -115,6 +115,58 @@ def test_a_task_shows_phase_and_progress_and_can_be_cancelled(server, open_page)
     assert page.locator("#toast").inner_text() == "The target was lost"
 
 
+MOVE = {
+    "type": "move",
+    "tracks_in_world": [[[0.3, 0.08], [0.6, 0.1]], [[0.3, -0.12], [0.6, -0.1]]],
+    "body_in_world": [[0.55, 0.1], [0.75, 0.1], [0.75, -0.1], [0.55, -0.1]],
+    "words": "driving 0.30 m forward",
+    "expected_sd": 0.0213,
+    "expected_relative_sd": 0.0142,
+}
+NO_MOVE = MOVE | {
+    "tracks_in_world": [],
+    "body_in_world": [],
+    "words": "",
+    "expected_sd": None,
+    "expected_relative_sd": None,
+}
+GREEN = """(id) => { const c = document.getElementById(id); if (!c.width) return 0;
+  const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0;
+  for (let i = 0; i < d.length; i += 4)
+    if (d[i] < 140 && d[i + 1] > 190 && d[i + 2] > 120 && d[i + 2] < 190) n++;
+  return n; }"""
+
+
+def test_move_is_shown_with_what_it_should_bring_until_it_is_over(server, open_page):
+    page = open_page()
+    server.push(TARGET)
+    task = {"type": "task", "task_id": 1, "kind": "locate", "state": "running", "phase": "move"}
+    server.push(task | {"progress": 0.25, "message": "driving 0.30 m forward"})
+    server.push(MOVE)
+    page.wait_for_selector("#task-expects:not([hidden])")
+    assert page.locator("#task-expects").inner_text() == "expects ±2.1 cm, 1.4 %"
+    page.wait_for_function(f"({GREEN})('plan') > 100")
+    server.push(NO_MOVE)
+    page.wait_for_selector("#task-expects", state="hidden")
+    page.wait_for_function(f"({GREEN})('plan') === 0")
+    server.push(task | {"state": "done", "progress": 1.0, "message": "1.20 m away"})
+    page.wait_for_selector("#toast:not([hidden])")
+    assert page.locator("#toast").inner_text() == "1.20 m away"
+
+
+def test_path_is_drawn_where_the_frames_meta_puts_it(server, open_page):
+    page = open_page()
+    assert page.evaluate(GREEN, "picture") == 0
+    server.path = [
+        [[200.0, 470.0], [260.0, 300.0]],
+        [[440.0, 470.0], [380.0, 300.0]],
+        [[270.0, 260.0], [370.0, 260.0], [390.0, 320.0], [250.0, 320.0], [270.0, 260.0]],
+    ]
+    page.wait_for_function(f"({GREEN})('picture') > 200")
+    server.path = []
+    page.wait_for_function(f"({GREEN})('picture') === 0")
+
+
 def test_guide_acts_and_typed_values(server, open_page):
     page = open_page()
     page.click("#menu-open")

@@ -14,7 +14,7 @@ export const PROTOCOL_VERSION = 1;
 /**
  * What the server sends.
  *
- * @typedef {Welcome | Pong | Ack | State | TaskView | TargetView | TargetGone | GuideView | CapturesChanged} FromServer
+ * @typedef {Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | CapturesChanged} FromServer
  */
 
 /**
@@ -151,6 +151,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {number} v row, centre of the top-most pixel is 0 [px]
  * @property {"locate" | "floor"} purpose
  * @property {[number, number, number, number] | null} [box] left, top, right, bottom [px]; u and v are then its middle
+ * @property {number | null} [accuracy] locate: relative error of the range, one sigma, that is good enough; null: 0.01
  */
 
 /**
@@ -270,6 +271,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {"starting" | "running" | "lost"} health
  * @property {string} health_reason
  * @property {number} viewers
+ * @property {number} overruns control periods that came late since the start
  */
 
 /**
@@ -283,6 +285,18 @@ export const PROTOCOL_VERSION = 1;
  * @property {string} phase
  * @property {number} progress
  * @property {string} message
+ */
+
+/**
+ * The move that the running task is about to make or is making, on the floor in the world frame [m]. Empty and null when there is none.
+ *
+ * @typedef {object} MoveView
+ * @property {"move"} type
+ * @property {[number, number][][]} tracks_in_world the way of the robot's left side and of its right side, from start to end
+ * @property {[number, number][]} body_in_world the robot's corners at the end
+ * @property {string} words
+ * @property {number | null} expected_sd one sigma of the target's range after it [m]
+ * @property {number | null} expected_relative_sd the same as a share of the range
  */
 
 /**

@@ -1,8 +1,11 @@
-/** The running task: phase, progress, and a Cancel that ends it at once. */
-import { sentence } from "../view/words.js";
+/** The running task: phase, progress, the move it makes and what that should bring, and a Cancel. */
+import { expectation, sentence } from "../view/words.js";
 import { byId, setText } from "./dom.js";
 
-/** @typedef {import("../net/messages.js").TaskView} TaskView */
+/**
+ * @typedef {import("../net/messages.js").TaskView} TaskView
+ * @typedef {import("../net/messages.js").MoveView} MoveView
+ */
 
 export class TaskPanel {
   /**
@@ -13,6 +16,8 @@ export class TaskPanel {
     this.toast = toast;
     /** @type {TaskView | null} */
     this.task = null;
+    /** @type {MoveView | null} the move that is being made */
+    this.move = null;
     byId("task-cancel").addEventListener("click", () => void socket.send({ type: "task_cancel" }));
   }
 
@@ -27,15 +32,24 @@ export class TaskPanel {
     if (wasRunning && task.state !== "running") this.tellEnd(task);
   }
 
+  /** @param {MoveView} move one without tracks says that it is over */
+  showMove(move) {
+    this.move = move.tracks_in_world.length > 0 ? move : null;
+    const words = this.move ? expectation(this.move) : "";
+    byId("task-expects").hidden = words === "";
+    setText(byId("task-expects"), words && `expects ${words}`);
+  }
+
   /** A lost connection ends what the page knows of a task. */
   clear() {
-    this.task = null;
-    byId("task").hidden = true;
+    this.task = this.move = null;
+    byId("task").hidden = byId("task-expects").hidden = true;
   }
 
   /** @param {TaskView} task */
   tellEnd(task) {
     if (task.state === "cancelled") this.toast.tell(task.message || "Cancelled. The robot stands still.");
+    if (task.state === "done" && task.message) this.toast.tell(task.message);
     if (task.state === "failed") this.toast.tell(task.message || "This did not work.", "bad");
   }
 }

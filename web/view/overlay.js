@@ -8,7 +8,7 @@
  * @typedef {import("../net/messages.js").TargetView} TargetView
  */
 import { boxFromPicture } from "./letterbox.js";
-import { ACCENT, FONT, GUESS, INK, SHADE, SOFT } from "./palette.js";
+import { ACCENT, FONT, GUESS, INK, PATH, SHADE, SOFT } from "./palette.js";
 import { length } from "./words.js";
 
 const RADIUS = 13;
@@ -29,6 +29,7 @@ export class Overlay {
     ctx.rect(placement.left, placement.top, placement.width, placement.height);
     ctx.clip();
     drawCentreLine(ctx, placement);
+    drawPath(ctx, placement, frame.meta?.path ?? []);
     const markers = frame.meta?.markers ?? [];
     for (const marker of markers) this.drawMarker(ctx, placement, marker);
     for (const target of this.unmarked(frame, markers)) {
@@ -87,6 +88,33 @@ function drawTarget(ctx, placement, marker, target) {
   ctx.setLineDash([]);
   outlined(ctx, colour(target), () => drawTicks(ctx, x, y));
   drawLabel(ctx, placement, x, y, target);
+}
+
+/**
+ * The way the robot is about to drive, on the floor: between its two sides, and where it will stand.
+ * @param {CanvasRenderingContext2D} ctx @param {Placement} placement @param {[number, number][][]} path
+ */
+function drawPath(ctx, placement, path) {
+  const [left = [], right = [], body = []] = path;
+  const sides = [...left, ...[...right].reverse()];
+  if (left.length > 1 && right.length > 1) {
+    trace(ctx, placement, sides);
+    ctx.globalAlpha = 0.2;
+    ctx.fillStyle = PATH;
+    ctx.fill();
+    ctx.globalAlpha = 1;
+  }
+  for (const side of [left, right]) outlined(ctx, PATH, () => (trace(ctx, placement, side), ctx.stroke()), 2);
+  outlined(ctx, PATH, () => (trace(ctx, placement, body), ctx.stroke()), 2.5);
+}
+
+/** @param {CanvasRenderingContext2D} ctx @param {Placement} placement @param {[number, number][]} points */
+function trace(ctx, placement, points) {
+  ctx.beginPath();
+  for (const [u, v] of points) {
+    const { x, y } = boxFromPicture(placement, u, v);
+    ctx.lineTo(x, y);
+  }
 }
 
 /**

@@ -1,13 +1,14 @@
 /**
- * A small plan view from above: the robot in the middle below, heading up; its field of view, the rays of
- * sight, each target with the outline of its 95 % region, and a scale bar.
+ * A small plan view from above: the robot in the middle below, heading up; its field of view, the way it is
+ * about to drive, the rays of sight, each target with the outline of its 95 % region, and a scale bar.
  *
  * @typedef {import("../net/messages.js").TargetView} TargetView
  * @typedef {import("../net/messages.js").OdometryView} OdometryView
+ * @typedef {import("../net/messages.js").MoveView} MoveView
  * @typedef {{x: number, y: number}} Point in base: x ahead, y left [m]
  */
-import { ACCENT, FAINT, FONT, GUESS, INK, SOFT } from "./palette.js";
-import { length } from "./words.js";
+import { ACCENT, FAINT, FONT, GUESS, INK, PATH, SHADE, SOFT } from "./palette.js";
+import { expectation, length } from "./words.js";
 
 const LEAST_REACH = 0.6;
 const ROBOT_AT = 0.82;
@@ -26,13 +27,15 @@ export class Plan {
    * @param {OdometryView} odometry
    * @param {TargetView[]} targets
    * @param {number} halfView half the horizontal field of view [rad]
+   * @param {MoveView | null} move that is being made
    */
-  draw(odometry, targets, halfView) {
+  draw(odometry, targets, halfView, move = null) {
     this.fit(odometry, targets);
     if (this.width === 0) return;
     this.drawView(halfView);
     for (const target of targets) this.drawTarget(odometry, target);
     this.drawRobot();
+    if (move) this.drawMove(odometry, move);
     this.drawScale();
   }
 
@@ -65,6 +68,46 @@ export class Plan {
     ctx.lineTo(...this.place({ x: far, y: far * Math.tan(halfView) }));
     ctx.lineTo(...this.place({ x: far, y: -far * Math.tan(halfView) }));
     ctx.fill();
+  }
+
+  /** @param {OdometryView} odometry @param {MoveView} move */
+  drawMove(odometry, move) {
+    const { ctx } = this;
+    const [left, right] = move.tracks_in_world;
+    if (!left || !right) return;
+    ctx.fillStyle = ctx.strokeStyle = PATH;
+    ctx.globalAlpha = 0.25;
+    this.trace(odometry, [...left, ...[...right].reverse()]);
+    ctx.fill();
+    ctx.globalAlpha = 1;
+    ctx.lineWidth = 1.5;
+    this.trace(odometry, move.body_in_world);
+    ctx.closePath();
+    ctx.stroke();
+    this.drawExpectation(odometry, move);
+  }
+
+  /**
+   * Beside where the robot will stand, on the side with more room.
+   * @param {OdometryView} odometry @param {MoveView} move
+   */
+  drawExpectation(odometry, move) {
+    const { ctx } = this;
+    const words = expectation(move);
+    const corners = move.body_in_world.map(([x, y]) => this.place(baseFromWorld(odometry, x, y)));
+    const columns = corners.map(([column]) => column);
+    ctx.font = `600 12px ${FONT}`;
+    const width = ctx.measureText(words).width + 12;
+    const isRight = Math.max(...columns) + width + 6 < this.width;
+    const left = isRight ? Math.max(...columns) + 6 : Math.max(2, Math.min(...columns) - width - 6);
+    const middle = corners.reduce((sum, [, row]) => sum + row, 0) / corners.length;
+    const top = Math.min(this.height - 46, Math.max(2, middle - 10));
+    ctx.fillStyle = SHADE;
+    ctx.beginPath();
+    ctx.roundRect(left, top, width, 20, 6);
+    ctx.fill();
+    ctx.fillStyle = PATH;
+    ctx.fillText(words, left + 6, top + 14);
   }
 
   drawRobot() {

@@ -24,10 +24,50 @@ export function duration(ms) {
   return ms < 1000 ? `${number(ms, 0)} ms` : `${number(ms / 1000, 1)} s`;
 }
 
+/**
+ * @param {{expected_sd: number | null, expected_relative_sd: number | null}} move
+ * @returns {string} such as "±2.1 cm, 1.4 %"; '' when nothing is expected
+ */
+export function expectation({ expected_sd: sd, expected_relative_sd: share }) {
+  return sd === null || share === null ? "" : `±${number(sd * 100, 1)} cm, ${number(share * 100, 1)} %`;
+}
+
 /** @param {number} metres @returns {string} centimetres below a metre, where they read better */
 export function length(metres) {
   return Math.abs(metres) < 1 ? `${number(metres * 100, 1)} cm` : `${number(metres, 2)} m`;
 }
+
+/** Two-sided 95 % of a normal distribution, in sigmas. */
+export const SIGMAS_OF_95 = 1.96;
+
+/**
+ * @param {import("../net/messages.js").ExtentView} extent
+ * @returns {string} such as "7 cm wide ± 1, 11.8 cm high ± 0.6", and what to know of it
+ */
+export function size({ width, height, width_sigma: across, height_sigma: down, reason }) {
+  if (width === null || height === null) return `No size: ${reason}`;
+  const words = [`${centimetres(width, across, "wide")}, ${centimetres(height, down, "high")}`, reason];
+  return words.filter(Boolean).map(sentence).join(". ");
+}
+
+/**
+ * @param {import("../net/messages.js").ExtentView} extent
+ * @returns {string} such as "7 × 12 cm"
+ */
+export function shortSize({ width, height, width_sigma: across, height_sigma: down }) {
+  if (width === null || height === null) return "";
+  const digits = digitsFor(Math.max(across ?? 0, down ?? 0));
+  return `${number(width * 100, digits)} × ${number(height * 100, digits)} cm`;
+}
+
+/** @param {number} metres @param {number | null} sigma @param {string} way */
+function centimetres(metres, sigma, way) {
+  const digits = digitsFor(sigma ?? 0);
+  return `${number(metres * 100, digits)} cm ${way} ± ${number(SIGMAS_OF_95 * 100 * (sigma ?? 0), digits)}`;
+}
+
+/** @param {number} sigma [m] @returns {number} digits after the point of centimetres that say something */
+const digitsFor = (sigma) => (SIGMAS_OF_95 * 100 * sigma < 0.95 ? 1 : 0);
 
 /**
  * @param {number} linear [m/s]

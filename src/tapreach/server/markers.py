@@ -1,6 +1,7 @@
 """Where the targets fall in a frame: computed once per frame, travelling with its pixels."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -15,6 +16,8 @@ from tapreach.robot.config import CameraSection
 from tapreach.tasks.target import Target
 
 SPHERE_POINTS = 24
+BEFORE_CAMERA = 0.05
+"""Nearer to the camera's plane nothing is drawn [m]."""
 
 
 def _great_circles() -> FloatArray:
@@ -64,13 +67,30 @@ class MarkerProjection:
         self._camera: Camera = section.model()
         self._camera_from_base: RigidTransform = section.mount.base_from_camera().inv()
 
-    def meta(self, world_from_base: PlanarPose | None, marks: list[Mark]) -> bytes:
-        """Return the JSON that travels with a frame captured at `world_from_base` (None: not known)."""
-        base, markers = None, []
+    def meta(
+        self,
+        world_from_base: PlanarPose | None,
+        marks: list[Mark],
+        path_in_world: Sequence[FloatArray] = (),
+    ) -> bytes:
+        """Return the JSON that travels with a frame captured at `world_from_base` (None: not known).
+
+        path_in_world: lines (n, 3) of the move that is being made.
+        """
+        meta: dict[str, object] = {"base": None, "markers": []}
         if world_from_base is not None:
-            base = [world_from_base.x, world_from_base.y, world_from_base.heading]
-            markers = self._markers(world_from_base, marks) if marks else []
-        return json.dumps({"base": base, "markers": markers}, separators=(",", ":")).encode()
+            meta["base"] = [world_from_base.x, world_from_base.y, world_from_base.heading]
+            meta["markers"] = self._markers(world_from_base, marks) if marks else []
+            if path_in_world:
+                meta["path"] = [self._line(world_from_base, line) for line in path_in_world]
+        return json.dumps(meta, separators=(",", ":")).encode()
+
+    def _line(self, world_from_base: PlanarPose, points_in_world: FloatArray) -> list[list[float]]:
+        """Return a line's pixels, from where it comes before the camera on."""
+        camera_from_world = self._camera_from_base * world_from_base.to_rigid().inv()
+        points = camera_from_world.apply(points_in_world)
+        pixels = self._camera.project(points[points[:, 2] > BEFORE_CAMERA]).pixels
+        return [[round(float(u), 1), round(float(v), 1)] for u, v in pixels]
 
     def _markers(self, world_from_base: PlanarPose, marks: list[Mark]) -> list[dict[str, object]]:
         """All marks go through the camera at once: this runs between frames, in the event loop."""

@@ -21,6 +21,7 @@ from tapreach.server.message_parts import (
 
 PROTOCOL_VERSION = 1
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+Accuracy = Annotated[float, Field(ge=0.001, le=0.5, allow_inf_nan=False)]
 FrameId = Annotated[int, Field(ge=1)]
 ArmControl = Literal["T", "R", "left", "right", "forward", "backward"]
 GuideKind = Literal["two_tap", "rotation_centre"]
@@ -140,6 +141,9 @@ class TapTarget(Request):
     purpose: Literal["locate", "floor"]
     box: tuple[Finite, Finite, Finite, Finite] | None = Field(
         None, description="left, top, right, bottom [px]; u and v are then its middle"
+    )
+    accuracy: Accuracy | None = Field(
+        None, description="locate: relative error of the range, one sigma, that is good enough; null: 0.01"
     )
 
 
@@ -270,6 +274,7 @@ class State(Message):
     health: Literal["starting", "running", "lost"]
     health_reason: str
     viewers: int
+    overruns: int = Field(description="control periods that came late since the start")
 
 
 class TaskView(Message):
@@ -310,6 +315,22 @@ class TargetView(Message):
     extent: ExtentView | None = Field(None, description="null: not asked for, or no position yet")
 
 
+class MoveView(Message):
+    """The move that the running task is about to make or is making, on the floor in the world frame [m].
+
+    Empty and null when there is none.
+    """
+
+    type: Literal["move"] = "move"
+    tracks_in_world: tuple[tuple[tuple[float, float], ...], ...] = Field(
+        description="the way of the robot's left side and of its right side, from start to end"
+    )
+    body_in_world: tuple[tuple[float, float], ...] = Field(description="the robot's corners at the end")
+    words: str
+    expected_sd: float | None = Field(description="one sigma of the target's range after it [m]")
+    expected_relative_sd: float | None = Field(description="the same as a share of the range")
+
+
 class TargetGone(Message):
     """A target was forgotten."""
 
@@ -342,4 +363,6 @@ class CapturesChanged(Message):
     newest: str | None
 
 
-FromServer = Welcome | Pong | Ack | State | TaskView | TargetView | TargetGone | GuideView | CapturesChanged
+FromServer = (
+    Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | CapturesChanged
+)

@@ -16,6 +16,7 @@ from tapreach.server.messages import (
 )
 from tapreach.server.station import Station
 from tapreach.server.visitor import Visitor
+from tapreach.tasks.locate import ACCURACY
 from tapreach.tasks.task import Tap
 
 
@@ -33,7 +34,8 @@ class TaskRequests:
         if request.purpose == "floor":
             await self._station.tasks.guess_on_floor(tap)
         else:
-            self._station.tasks.locate(tap, visitor.session_id)
+            accuracy = ACCURACY if request.accuracy is None else request.accuracy
+            self._station.tasks.locate(tap, visitor.session_id, accuracy)
         return _done(request)
 
     def target_clear(self, visitor: Visitor, request: TargetClear) -> Ack:

@@ -31,6 +31,7 @@ class StateView:
             health=health.status.value,
             health_reason=health.reason,
             viewers=station.feed.viewers,
+            overruns=station.loop.overruns,
         )
 
     def _lease(self) -> LeaseView:

@@ -21,6 +21,7 @@ from tapreach.server.guests import Guests
 from tapreach.server.hub import Hub
 from tapreach.server.markers import MarkerProjection
 from tapreach.server.messages import CapturesChanged
+from tapreach.server.planned_path import PlannedPath
 from tapreach.server.state_view import StateView
 from tapreach.server.targets import Targets
 from tapreach.server.task_desk import ComputeService, TaskDesk
@@ -47,6 +48,7 @@ class Station:
         self.guests = Guests()
         self.hub = Hub()
         self.targets = Targets(self.hub)
+        self.planned_path = PlannedPath(self.hub, robot.description)
         self.emergency_stop = EmergencyStop(clock, self._on_emergency_stop)
         self.lease = Lease(clock, self._on_lease)
         self.deadman = Deadman(clock)
@@ -147,7 +149,9 @@ class Station:
         return pose if captured_ns - newest_ns < POSE_LAG_NS else None
 
     def _describe(self, frame: Frame) -> bytes:
-        return self._projection.meta(self.pose_at(frame.captured_ns), self.targets.marks)
+        return self._projection.meta(
+            self.pose_at(frame.captured_ns), self.targets.marks, self.planned_path.lines_in_world
+        )
 
     def _on_odometry(self, reading: Odometry) -> None:
         try:

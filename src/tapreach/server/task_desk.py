@@ -15,7 +15,7 @@ from tapreach.server.messages import GuideView, TaskView
 from tapreach.tasks.floor_guess import floor_guess
 from tapreach.tasks.guide import Guide
 from tapreach.tasks.guide_state import GuideKind, GuideState
-from tapreach.tasks.locate import LocateTask
+from tapreach.tasks.locate import ACCURACY, LocateTask
 from tapreach.tasks.runner import TaskProgress, TaskRunner
 from tapreach.tasks.target import Target
 from tapreach.tasks.task import Compute, Tap, TaskContext, TaskReport
@@ -55,6 +55,7 @@ class TaskDesk:
             next_frame=self._next_frame,
             report=_report_nowhere,
             show_target=self._show_target,
+            show_move=station.planned_path.show,
         )
         self._runner = TaskRunner(self._context, station.loop, self._tell_progress)
         self._guide: Guide | None = None
@@ -83,14 +84,14 @@ class TaskDesk:
         """Stop the running task; False when none runs."""
         return self._runner.cancel(reason)
 
-    def locate(self, tap: Tap, session_id: int) -> None:
+    def locate(self, tap: Tap, session_id: int, accuracy: float = ACCURACY) -> None:
         """Start locating. Raises FrameError, InputError; and InputError with the gate's reason."""
         self._require_tap(tap)
         reason = refusal(self._station.authority.circumstances_of(session_id))
         if reason:
             raise InputError(reason)
         target_id = self._station.targets.new_id()
-        self._runner.start(LocateTask(tap, target_id), session_id)
+        self._runner.start(LocateTask(tap, target_id, accuracy=accuracy), session_id)
         self._located_target_id = target_id
 
     async def guess_on_floor(self, tap: Tap) -> None:

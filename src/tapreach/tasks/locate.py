@@ -106,7 +106,7 @@ class _Locating:
                 return End.REACHED
             if not has_helped(before, self._estimate):
                 return End.NO_GAIN
-            if self._driven > MOST_DRIVEN - SHORTEST_ADVANCE:
+            if self._way_left < SHORTEST_ADVANCE:
                 break
         return End.WAY_USED_UP
 
@@ -195,8 +195,12 @@ class _Locating:
         tilt_sigma = radians(self._context.description.camera.mount.angle_sigma_deg)
         return supposed_distances(self._first_ray, estimate, tilt_sigma)
 
+    @property
+    def _way_left(self) -> float:
+        return max(0.0, MOST_DRIVEN - self._driven)
+
     async def _choose(self) -> Choice | None:
-        ahead = min(LONGEST_ADVANCE, MOST_DRIVEN - self._driven)
+        ahead = min(LONGEST_ADVANCE, self._way_left)
         seen = self._estimate
         return await self._context.compute.call(
             planned_move,
@@ -218,7 +222,9 @@ class _Locating:
         target = self._report.target(self._sightings(), self._estimate, not self._follower.loss)
         if self._estimate is None or target.range is None or target.range_interval is None:
             return self._no_position(target)
-        return closing_sentence(target, self._estimate, end, self._accuracy, self._follower.loss)
+        return closing_sentence(
+            target, self._estimate, end, self._accuracy, self._way_left, self._follower.loss
+        )
 
     def _no_position(self, target: Target) -> str:
         if self._driven == 0.0:

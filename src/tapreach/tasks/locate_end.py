@@ -36,8 +36,13 @@ def has_helped(before: PointEstimate | None, now: PointEstimate | None) -> bool:
     return now.relative_sd < HELPED * before.relative_sd
 
 
-def closing_sentence(target: Target, estimate: PointEstimate, end: End, wanted: float, loss: str) -> str:
-    """Return what was found and why nothing more was done, for a target that has a position."""
+def closing_sentence(
+    target: Target, estimate: PointEstimate, end: End, wanted: float, way_left: float, loss: str
+) -> str:
+    """Return what was found and why nothing more was done, for a target that has a position.
+
+    wanted: the relative error that was. way_left [m]: what might still be driven.
+    """
     assert target.range is not None and target.range_interval is not None
     low, high = target.range_interval
     found = f"{target.range:.2f} m away (95 %: {low:.2f} to {high:.2f} m)"
@@ -47,7 +52,7 @@ def closing_sentence(target: Target, estimate: PointEstimate, end: End, wanted: 
     if end is End.LOST:
         return f"{found}: {known}; lost on the way ({loss}), from the views before"
     why = {
-        End.NO_GAIN: "more motion would not help much",
+        End.NO_GAIN: f"the {way_left:.2f} m that it may still drive would not help much",
         End.WAY_USED_UP: "the way it may drive is used up",
         End.NO_MOVE: "no further move keeps it in the picture",
     }[end]

@@ -38,16 +38,11 @@ class PlannedMove:
 
     @property
     def in_words(self) -> str:
-        """Such as 'turning 12° left, then driving 0.30 m forward; expects ±2.1 cm, 1.4 %'."""
+        """Such as 'turning 12° left, then driving 0.30 m forward'."""
         step = self.step
         side, way = "left" if step.turn > 0.0 else "right", "forward" if step.advance >= 0.0 else "back"
         turn = f"turning {abs(math.degrees(step.turn)):.0f}° {side}, then " if self._turns else ""
-        return f"{turn}driving {abs(step.advance):.2f} m {way}; expects {self.expectation}"
-
-    @property
-    def expectation(self) -> str:
-        """One sigma of the range in centimetres and percent."""
-        return f"±{100.0 * self.expected_sd:.1f} cm, {100.0 * self.expected_relative_sd:.1f} %"
+        return f"{turn}driving {abs(step.advance):.2f} m {way}"
 
     @property
     def _turns(self) -> bool:
