@@ -147,6 +147,7 @@ def _safety_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
     )
     share = 100.0 * flagged / max(singular.total(), 1)
     behind = sum(result.behind for result in results)
+    first = exceptions[0] if exceptions else ""
     return (
         Figure("motions", total, "", None, f"wandering: {of_wandering}"),
         Figure("singular: flagged", share, "%", at_least(100.0), of_singular),
