@@ -15,9 +15,9 @@ class CameraMatrices:
     """m guesses of n cameras.
 
     matrices (m, n, 3, 4): to each camera from homogeneous points of the nominal first one, (4) and (5).
-    back (m, n or 1, 3, 3): exp(-phi). slopes, of this shape: right Jacobians at phi. into_view (n, 3, 3): nominal
-    rotations. by_normal (n, 6, k): errors per unit normal. first: None where the first camera has no errors,
-    else its position (m, 3) and rotation (m, 3, 3) in the nominal one.
+    back (m, n or 1, 3, 3): exp(-phi). slopes, of this shape: right Jacobians at phi. into_view (n, 3, 3):
+    nominal rotations. by_normal (n, 6, k): errors per unit normal. first: None where the first camera has no
+    errors, else its position (m, 3) and rotation (m, 3, 3) in the nominal one.
     """
 
     matrices: FloatArray
@@ -69,7 +69,7 @@ def camera_matrices(nominal: FloatArray, by_normal: FloatArray, normals: FloatAr
         first = shift, forth
         ahead = nominal @ _as_poses(shift, forth)[:, None]
     else:
-        ahead = np.broadcast_to(nominal, (count, views, 3, 4)).copy()
+        ahead = np.array([nominal] * count)
     ahead[..., 3] -= errors[..., :3]
     return CameraMatrices(back @ ahead, back, slopes, into_view, by_normal, first)
 

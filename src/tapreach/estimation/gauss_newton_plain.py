@@ -37,7 +37,7 @@ def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
 def _step(now: Linearised) -> tuple[FloatArray, float]:
     """Return the step (3 + k,) to the minimum of the linearised problem and the fall of the cost there.
 
-    With e = r − Jz z and w = C⁻¹ (e + Jt dt), Jtᵀ w = 0: dz = −Jzᵀ w − z, and what remains of the cost is eᵀ w.
+    With e = r − Jz z and w = C⁻¹ (e + Jt dt), Jtᵀ w = 0: dz = −Jzᵀ w − z, and eᵀ w remains of the cost.
     """
     by_target, by_errors, normals = now.by_target[0], now.by_errors[0], now.x[0, 3:]
     expected = now.residuals[0] - by_errors @ normals

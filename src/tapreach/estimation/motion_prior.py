@@ -16,6 +16,7 @@ from tapreach.geometry.gaussian import require_covariance
 from tapreach.geometry.pose import skew
 
 _PLANAR_ROWS = [0, 1, 5]
+_EXACT = NuisancePriors()
 
 
 @dataclass(frozen=True)
@@ -89,17 +90,20 @@ def camera_errors_with_next(
     world_from_bases (c, v, 4, 4): v places along each way; next_pixels (c v, 2): where the target will be
     seen there. The ways share normals: use at most one of them with the others.
     """
-    priors = nuisances or NuisancePriors()
+    priors = nuisances or _EXACT
     mounts = [view.base_from_camera for view in observations]
     mounts += [mounts[-1]] * (world_from_bases.shape[0] * world_from_bases.shape[1])
-    of_bases = _base_errors(observations, motion, world_from_bases, priors)
-    of_cameras = _inverse_adjoints(mounts) @ of_bases
+    of_cameras = _inverse_adjoints(mounts) @ _base_errors(observations, motion, world_from_bases, priors)
     with_poses = np.zeros_like(of_cameras[-1])
     if isinstance(motion, PoseErrors):
         with_poses[:, : motion.by_mount.shape[1]] = motion.by_mount
     of_cameras = of_cameras + with_poses
     of_mount = _mount_errors(mounts, mount_noise, priors)
     of_picture = _picture_errors(observations, next_pixels, len(mounts), priors.focal_scale, tap_bias_px)
+    if of_mount is None and of_picture is None:
+        return CameraErrors(of_cameras, np.zeros((6, of_cameras.shape[2])))
+    of_mount = np.zeros((len(mounts), 6, 0)) if of_mount is None else of_mount
+    of_picture = np.zeros((len(mounts), 2, 0)) if of_picture is None else of_picture
     parts = [of_cameras, of_mount, np.zeros((len(mounts), 6, of_picture.shape[2]))]
     by_mount = np.concatenate([with_poses, of_mount[-1], parts[2][-1]], axis=1)
     by_pixel = None
@@ -111,15 +115,15 @@ def camera_errors_with_next(
 
 def _mount_errors(
     mounts: Sequence[RigidTransform], mount_noise: MountNoise | None, priors: NuisancePriors
-) -> FloatArray:
-    parts = [np.zeros((len(mounts), 6, 0))]
+) -> FloatArray | None:
+    parts = []
     if mount_noise is not None:
         sigmas = np.repeat([mount_noise.position_sigma, mount_noise.angle_sigma], 3)
         of_mount = np.diag(sigmas)[:, sigmas > 0.0]
         parts.append(np.broadcast_to(of_mount, (len(mounts), *of_mount.shape)))
     if priors.moves_the_mount:
         parts.append(mount_columns(np.array([mount.as_matrix() for mount in mounts]), priors))
-    return np.concatenate(parts, axis=2)
+    return np.concatenate(parts, axis=2) if parts else None
 
 
 def _picture_errors(
@@ -128,8 +132,8 @@ def _picture_errors(
     count: int,
     focal_scale: float,
     tap_bias_px: float,
-) -> FloatArray:
-    parts = [np.zeros((count, 2, 0))]
+) -> FloatArray | None:
+    parts = []
     if focal_scale > 0.0:
         pixels = np.array([(view.pixel.u, view.pixel.v) for view in observations])
         every = pixels if next_pixels is None else np.concatenate([pixels, next_pixels])
@@ -138,7 +142,7 @@ def _picture_errors(
         parts.append(focal_columns(cameras, every, focal_scale))
     if tap_bias_px > 0.0:
         parts.append(np.broadcast_to(tap_bias_px * np.eye(2), (count, 2, 2)))
-    return np.concatenate(parts, axis=2)
+    return np.concatenate(parts, axis=2) if parts else None
 
 
 def _base_errors(
@@ -180,17 +184,19 @@ def _motion_errors(
 def _odometry_errors(
     observations: Sequence[Observation], noise: OdometryNoise, world_from_bases: FloatArray
 ) -> FloatArray:
-    given = np.array([view.world_from_base.as_matrix() for view in observations])
-    matrices = np.concatenate([given, world_from_bases.reshape(-1, 4, 4)])
+    given = matrices = np.array([view.base_matrix for view in observations])
+    if len(world_from_bases):
+        matrices = np.concatenate([given, world_from_bases.reshape(-1, 4, 4)])
     start, offsets = matrices[0, :3, :3], matrices[:, :3, 3] - matrices[0, :3, 3]
     ahead = matrices[:, :3, 0] @ start
     headings = np.arctan2(ahead[:, 1], ahead[:, 0])
-    poses = np.column_stack([(offsets @ start)[:, :2], headings])
+    poses = offsets @ start
+    poses[:, 2] = headings
     planar = chain_errors(poses[: len(given)], noise)
     if len(world_from_bases):
         coming = poses[len(given) :].reshape(*world_from_bases.shape[:2], 3)
         planar = with_next_errors(planar, poses[len(given) - 1], coming, noise)
-    used = np.any(planar != 0.0, axis=(0, 1))
+    used = planar.reshape(-1, planar.shape[2]).any(axis=0)
     errors = np.zeros((len(matrices), 6, int(used.sum())))
     errors[:, _PLANAR_ROWS] = planar[:, :, used]
     return errors
@@ -221,8 +227,11 @@ def _covariance_errors(covariance: FloatArray, count: int) -> FloatArray:
 
 
 def _inverse_adjoints(mounts: Sequence[RigidTransform]) -> FloatArray:
-    """Return (n, 6, 6): `_inverse_adjoint` of every mount; mostly there is but one."""
-    adjoints = {key: _inverse_adjoint(mount) for key, mount in {id(each): each for each in mounts}.items()}
+    """Return (n, 6, 6): `_inverse_adjoint` of every mount, (6, 6) where, as mostly, there is but one."""
+    distinct = {id(each): each for each in mounts}
+    if len(distinct) == 1:
+        return _inverse_adjoint(mounts[0])
+    adjoints = {key: _inverse_adjoint(mount) for key, mount in distinct.items()}
     return np.array([adjoints[id(mount)] for mount in mounts])
 
 

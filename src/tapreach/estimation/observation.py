@@ -1,12 +1,14 @@
 """One sighting of the target: a pixel, the camera that saw it, and where that camera was."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
 from tapreach.geometry.camera import Camera
-from tapreach.geometry.finite import positive
+from tapreach.geometry.finite import FloatArray, positive
 from tapreach.geometry.pixel import Pixel, require_inside
 
 
@@ -31,6 +33,16 @@ class Observation:
         for name in ("world_from_base", "base_from_camera"):
             if not isinstance(getattr(self, name), RigidTransform):
                 raise InputError(f"{name} is a {type(getattr(self, name)).__name__}; give a RigidTransform")
+
+    @cached_property
+    def base_matrix(self) -> FloatArray:
+        """world_from_base as (4, 4)."""
+        return np.asarray(self.world_from_base.as_matrix(), dtype=np.float64)
+
+    @cached_property
+    def camera_matrix(self) -> FloatArray:
+        """world_from_camera as (4, 4)."""
+        return np.asarray(self.base_matrix @ self.base_from_camera.as_matrix())
 
     @property
     def world_from_camera(self) -> RigidTransform:

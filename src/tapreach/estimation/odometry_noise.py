@@ -9,6 +9,8 @@ import numpy as np
 from tapreach.geometry.finite import FloatArray, not_negative
 from tapreach.geometry.planar_motion import PlanarPose
 
+_TURNING = np.array([1.0, 1.0, 0.0, 1.0, 0.0])  # what turns the base: `_step_columns`
+
 
 @dataclass(frozen=True)
 class OdometryNoise:
@@ -46,38 +48,51 @@ class OdometryNoise:
 
     def step_covariances(self, steps: FloatArray) -> FloatArray:
         """Return `step_covariance` (n, 3, 3) of many steps (n, 3), each x, y [m], heading [rad]."""
-        first_turn, advance, last_turn = _split(steps)
-        columns = _step_columns(advance, last_turn)
-        turns, distance = np.abs(np.stack([first_turn, last_turn])), np.abs(advance)
-        by_turns = self.turn_per_sqrt_rad**2 * turns + self.turn_fraction**2 * turns**2
-        by_advance = self.advance_per_sqrt_m**2 * distance + self.advance_fraction**2 * distance**2
-        drift = self.turn_per_sqrt_m**2 * distance
+        turns, advance = _split(steps)
+        columns = _step_columns(advance, turns[1])
+        distance = np.abs(advance)
+        variances = np.empty((5, len(steps)))
+        variances[:2] = _variances(np.abs(turns), self.turn_per_sqrt_rad, self.turn_fraction)
+        variances[2] = _variances(distance, self.advance_per_sqrt_m, self.advance_fraction)
+        variances[3] = self.turn_per_sqrt_m**2 * distance
         # A heading that drifts on the way also leaves this part of the sideways error unexplained.
-        slip = self.slip_per_sqrt_m**2 * distance + drift * distance**2 / 12.0
-        variances = np.stack([*by_turns, by_advance, drift, slip], axis=1)
-        return np.asarray((columns * variances[:, None]) @ np.swapaxes(columns, 1, 2))
+        variances[4] = distance * (self.slip_per_sqrt_m**2 + variances[3] * distance / 12.0)
+        return np.asarray((columns * variances.T[:, None]) @ columns.mT)
 
     def scale_columns(self, steps: FloatArray) -> FloatArray:
         """Return (n, 3, 2): the errors of steps (n, 3) for one sigma of the two shared scales."""
-        first_turn, advance, last_turn = _split(steps)
-        columns = _step_columns(advance, last_turn)
-        by_turn = columns[..., 0] * first_turn[:, None] + columns[..., 1] * last_turn[:, None]
-        by_advance = columns[..., 2] * advance[:, None]
-        return np.stack([by_advance * self.advance_scale, by_turn * self.turn_scale], axis=2)
+        scaled = np.zeros((len(steps), 3, 2))
+        if self.advance_scale == 0.0 and self.turn_scale == 0.0:
+            return scaled
+        turns, advance = _split(steps)
+        columns = _step_columns(advance, turns[1])
+        scaled[..., 0] = columns[..., 2] * (self.advance_scale * advance)[:, None]
+        scaled[..., 1] = self.turn_scale * (columns[..., :2] @ turns.T[:, :, None])[..., 0]
+        return scaled
 
 
-def _split(steps: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return steps (n, 3) as turn, advance, turn, (n,) each; the advance may be backwards."""
-    distance, heading = np.hypot(steps[:, 0], steps[:, 1]), _wrapped(steps[:, 2])
-    direction = np.arctan2(steps[:, 1], steps[:, 0])
-    forwards = direction, distance, _wrapped(heading - direction)
-    turned = _wrapped(direction + math.pi)
-    backwards = turned, -distance, _wrapped(heading - turned)
-    is_forwards = np.abs(forwards[0]) + np.abs(forwards[2]) <= np.abs(turned) + np.abs(backwards[2])
+def _variances(amounts: FloatArray, per_sqrt: float, fraction: float) -> FloatArray:
+    return np.asarray(amounts * (per_sqrt**2 + fraction**2 * amounts))
+
+
+def _split(steps: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return steps (n, 3) as turns before and after (2, n) and advance (n,); it may be backwards."""
+    distance, heading = np.hypot(steps[:, 0], steps[:, 1]), steps[:, 2]
+    first = np.empty((2, len(steps)))  # turns before an advance forwards and backwards
+    np.arctan2(steps[:, 1], steps[:, 0], out=first[0])
+    first[1] = first[0] - np.copysign(math.pi, first[0])
+    last = _wrapped(heading - first)
+    turned = np.abs(first) + np.abs(last)
+    is_backwards = turned[1] < turned[0]
+    turns, advance = np.stack([first[0], last[0]]), distance
+    if is_backwards.any():
+        turns = np.where(is_backwards, [first[1], last[1]], turns)
+        advance = np.where(is_backwards, -distance, distance)
     on_the_spot = distance < 1e-9
-    split = (np.where(is_forwards, ahead, back) for ahead, back in zip(forwards, backwards, strict=True))
-    first_turn, advance, last_turn = (np.where(on_the_spot, 0.0, part) for part in split)
-    return np.where(on_the_spot, heading, first_turn), advance, last_turn
+    if on_the_spot.any():
+        turns[0, on_the_spot], turns[1, on_the_spot] = _wrapped(heading[on_the_spot]), 0.0
+        advance = np.where(on_the_spot, 0.0, advance)
+    return turns, advance
 
 
 def _wrapped(angles: FloatArray) -> FloatArray:
@@ -88,11 +103,12 @@ def _step_columns(advance: FloatArray, last_turn: FloatArray) -> FloatArray:
     """Return (n, 3, 5): the end poses' change with first turn, last turn, advance, drift, sideways slip."""
     c, s = np.cos(last_turn), np.sin(last_turn)
     columns = np.zeros((len(advance), 3, 5))
-    columns[:, 0, 2], columns[:, 1, 2] = c, -s
-    columns[:, 0, 4], columns[:, 1, 4] = s, c
+    columns[:, 0, 2] = columns[:, 1, 4] = c
+    columns[:, 0, 4] = s
+    columns[:, 1, 2] = -s
     columns[:, :2, 0] = advance[:, None] * columns[:, :2, 4]
     columns[:, :2, 3] = 0.5 * columns[:, :2, 0]
-    columns[:, 2, [0, 1, 3]] = 1.0
+    columns[:, 2] = _TURNING
     return columns
 
 
@@ -110,6 +126,8 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     """
     steps = _ways(poses[:-1], poses[1:])
     count = len(steps)
+    if count == 1:
+        return _one_step_errors(steps, noise)
     onward = carried(_ways(poses[0], poses[1:]))
     backward = np.linalg.inv(onward)
     errors = np.zeros((count + 1, 3, 2 + 3 * count))
@@ -118,6 +136,14 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     by_step = onward[:, None] @ in_start
     by_step[np.triu_indices(count, 1)] = 0.0  # a step moves no pose before it
     errors[1:, :, 2:] = np.swapaxes(by_step, 1, 2).reshape(count, 3, 3 * count)
+    return errors
+
+
+def _one_step_errors(steps: FloatArray, noise: OdometryNoise) -> FloatArray:
+    """Return `chain_errors` (2, 3, 5) of one step (1, 3): nothing is carried on."""
+    errors = np.zeros((2, 3, 5))
+    errors[1:, :, :2] = noise.scale_columns(steps)
+    errors[1:, :, 2:] = covariance_root(noise.step_covariances(steps))
     return errors
 
 
@@ -152,9 +178,10 @@ def covariance_root(covariance: FloatArray) -> FloatArray:
 def _ways(from_poses: FloatArray, to_poses: FloatArray) -> FloatArray:
     """Return (n, 3): the poses `to_poses` as seen from `from_poses`; one of them may stand for many."""
     c, s = np.cos(from_poses[..., 2]), np.sin(from_poses[..., 2])
-    apart = to_poses - from_poses
-    x, y = c * apart[..., 0] + s * apart[..., 1], c * apart[..., 1] - s * apart[..., 0]
-    return np.stack([x, y, apart[..., 2]], axis=-1)
+    ways = np.asarray(to_poses - from_poses)
+    x, y = ways[..., 0].copy(), ways[..., 1].copy()
+    ways[..., 0], ways[..., 1] = c * x + s * y, c * y - s * x
+    return ways
 
 
 def carried(ways: FloatArray) -> FloatArray:

@@ -27,7 +27,7 @@ def cross_matrices(vectors: FloatArray) -> FloatArray:
 def backward_rotations(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return exp(-turn) and the right Jacobian of exp at turn, (..., 3, 3) each, for turns (..., 3) [rad]."""
     cross = cross_matrices(turns)
-    squared = np.asarray(cross @ cross)
+    squared = cross @ cross
     factors = _coefficients(np.add.reduce(turns * turns, axis=-1))[..., None, None]
     sine, cosine, third = factors[..., 0, :, :], factors[..., 1, :, :], factors[..., 2, :, :]
     back = _IDENTITY - sine * cross + cosine * squared

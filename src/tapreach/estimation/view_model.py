@@ -23,7 +23,7 @@ from tapreach.estimation.observation import Observation
 from tapreach.estimation.tap_noise import whitening
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
-from tapreach.geometry.lens import distortion_jacobian
+from tapreach.geometry.lens import NO_DISTORTION, distortion_jacobian
 
 _TARGET_COLUMNS = [0, 1, 3]  # of a projection matrix: those of a, b and rho
 _IN_FRONT = 1e-9  # least third homogeneous coordinate of a target before a camera
@@ -215,6 +215,10 @@ def sighted(observations: Sequence[Observation]) -> tuple[FloatArray, FloatArray
     """Return what was measured (n, 2), its weights (n, 2, 2) and sigmas (n,) as ViewModel keeps them."""
     sigmas = np.array([view.pixel_sigma for view in observations])
     pixels = np.array([(view.pixel.u, view.pixel.v) for view in observations])
+    first = observations[0].camera
+    if all(view.camera is first for view in observations):
+        measured = first.normalise(pixels)
+        return measured, pixel_weights(first, measured) / sigmas[:, None, None], sigmas
     measured = np.empty((len(observations), 2))
     weights = np.empty((len(observations), 2, 2))
     cameras = [view.camera for view in observations]
@@ -230,16 +234,18 @@ def camera_ways(observations: Sequence[Observation], further: FloatArray) -> Flo
 
     further (c, 4, 4): world_from_camera of further cameras.
     """
-    bases = np.array([view.world_from_base.as_matrix() for view in observations])
-    mounts = np.array([view.base_from_camera.as_matrix() for view in observations])
-    world_from_camera = np.concatenate([bases @ mounts, further])
-    rotations = np.swapaxes(world_from_camera[:, :3, :3], 1, 2)
-    offsets = world_from_camera[0, :3, 3] - world_from_camera[:, :3, 3]
-    first = rotations @ world_from_camera[0, :3, :3]
-    return np.concatenate([first, rotations @ offsets[:, :, None]], axis=2)
+    world_from_camera = np.array([view.camera_matrix for view in observations])
+    if len(further):
+        world_from_camera = np.concatenate([world_from_camera, further])
+    rotations, positions = world_from_camera[:, :3, :3].mT, world_from_camera[:, :3, 3]
+    apart = np.empty((len(positions), 3, 4))
+    apart[:, :, :3], apart[:, :, 3] = world_from_camera[0, :3, :3], positions[0] - positions
+    return np.asarray(rotations @ apart)
 
 
 def pixel_weights(camera: Camera, normalised: FloatArray) -> FloatArray:
     """Return d pixel / d (x/z, y/z) at (n, 2): (n, 2, 2) [px]."""
+    if camera.distortion == NO_DISTORTION:
+        return np.array([[[camera.fx, 0.0], [0.0, camera.fy]]] * len(normalised))
     slopes = distortion_jacobian(normalised, camera.distortion)
     return np.asarray(np.array([camera.fx, camera.fy])[:, None] * slopes)
