@@ -81,9 +81,18 @@ class BaseSection(Section):
     max_angular: Positive = Field(1.5, description="[rad/s]")
     max_linear_acceleration: Positive = Field(0.8, description="[m/s²]")
     max_angular_acceleration: Positive = Field(4.0, description="[rad/s²]")
-    distance_sigma: Positive = Field(0.01, description="one sigma of an advance, relative")
-    turn_sigma: Positive = Field(0.01, description="one sigma of a turn, relative")
+    distance_sigma: Positive = Field(0.01, description="one sigma of the scale of all advances")
+    turn_sigma: Positive = Field(0.01, description="one sigma of the scale of all turns")
     drift_sigma_deg_per_m: Positive = Field(0.5, description="one sigma of the heading per metre driven")
+    distance_sigma_per_sqrt_m: Positive = Field(
+        0.01, description="what is random in an advance: one sigma after 1 m, growing with the root [m]"
+    )
+    turn_sigma_deg_per_sqrt_rad: Positive = Field(
+        0.6, description="what is random in a turn: one sigma after 1 rad, growing with the root"
+    )
+    sideways_sigma_per_sqrt_m: Positive = Field(
+        0.005, description="sliding sideways in an advance: one sigma after 1 m, growing with the root [m]"
+    )
 
 
 class ArmPoseSection(Section):

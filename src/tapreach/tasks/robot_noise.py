@@ -11,7 +11,10 @@ def odometry_noise(description: RobotDescription) -> OdometryNoise:
     """Return how far this robot's file says its odometry is to be trusted."""
     base = description.base
     return OdometryNoise(
+        advance_per_sqrt_m=base.distance_sigma_per_sqrt_m,
+        turn_per_sqrt_rad=radians(base.turn_sigma_deg_per_sqrt_rad),
         turn_per_sqrt_m=radians(base.drift_sigma_deg_per_m),
+        slip_per_sqrt_m=base.sideways_sigma_per_sqrt_m,
         advance_scale=base.distance_sigma,
         turn_scale=base.turn_sigma,
     )
