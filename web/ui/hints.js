@@ -7,7 +7,7 @@ import { byId, setText } from "./dom.js";
 const STORAGE_KEY = "tapreach.hints";
 const HINTS = [
   { id: "drive", title: "Hold to drive", text: "Let go and the robot stops." },
-  { id: "tap", title: "Tap the red can", text: "The robot moves a little to find out where it is. Draw a box around it to learn its size as well." },
+  { id: "tap", title: "Tap the red can", text: "The robot moves a little to find it. Draw a box around it for its size." },
   { id: "sure", title: "This is how sure it is", text: "The outlined region holds the target 95 times in 100." },
 ];
 

@@ -9,6 +9,7 @@
  */
 import { boxFromPicture } from "./letterbox.js";
 import { ACCENT, FONT, GUESS, INK, SHADE, SOFT } from "./palette.js";
+import { shortSize } from "./words.js";
 
 const CORNER = 14;
 const NOTE = "Drag back to cancel";
@@ -27,9 +28,9 @@ export class Boxes {
     ctx.beginPath();
     ctx.rect(placement.left, placement.top, placement.width, placement.height);
     ctx.clip();
-    for (const { target_id: id, box } of frame.meta?.markers ?? []) {
-      const target = this.targets.byId.get(id);
-      if (target && box && box.length === 4) drawSized(ctx, placement, box, target);
+    for (const marker of frame.meta?.markers ?? []) {
+      const target = this.targets.byId.get(marker.target_id);
+      if (target && marker.box?.length === 4) drawSized(ctx, placement, { ...marker, box: marker.box }, target);
     }
     if (this.pending) drawPending(ctx, placement, this.pending);
     ctx.restore();
@@ -39,10 +40,10 @@ export class Boxes {
 /**
  * Corners only: the thing itself stays visible, and the outline of the region keeps its meaning.
  * @param {CanvasRenderingContext2D} ctx @param {Placement} placement
- * @param {[number, number][]} corners @param {import("../net/messages.js").TargetView} target
+ * @param {{u: number, v: number, box: [number, number][]}} marker @param {import("../net/messages.js").TargetView} target
  */
-function drawSized(ctx, placement, corners, target) {
-  const points = corners.map(([u, v]) => boxFromPicture(placement, u, v));
+function drawSized(ctx, placement, { u: atU, v: atV, box }, target) {
+  const points = box.map(([u, v]) => boxFromPicture(placement, u, v));
   const isGuess = target.source === "floor" || target.extent?.source === "outline";
   ctx.setLineDash(isGuess ? [5, 4] : []);
   stroke(ctx, target.source === "floor" ? GUESS : ACCENT, () => {
@@ -51,6 +52,12 @@ function drawSized(ctx, placement, corners, target) {
     });
   });
   ctx.setLineDash([]);
+  if (!target.extent) return;
+  const xs = points.map(({ x }) => x);
+  // Below the thing, and below the ring and the distance beside it.
+  const below = Math.max(...points.map(({ y }) => y), boxFromPicture(placement, atU, atV).y + 14) + 8;
+  const middle = (Math.min(...xs) + Math.max(...xs)) / 2;
+  drawChip(ctx, placement, shortSize(target.extent), middle, below, 600);
 }
 
 /** @param {CanvasRenderingContext2D} ctx @param {{x: number, y: number}} from @param {{x: number, y: number}} to */
@@ -73,22 +80,29 @@ function drawPending(ctx, placement, box) {
   if (!box.isEnough) return;
   ctx.fillStyle = "rgb(242 245 247 / 8%)";
   ctx.fillRect(...rect);
-  if (!box.isSent) drawNote(ctx, placement, from, to);
+  if (box.isSent) return;
+  const above = from.y - 34;
+  drawChip(ctx, placement, NOTE, (from.x + to.x) / 2, above > placement.top ? above : to.y + 8, 500);
 }
 
-/** @param {CanvasRenderingContext2D} ctx @param {Placement} placement @param {{x: number, y: number}} from @param {{x: number, y: number}} to */
-function drawNote(ctx, placement, from, to) {
-  ctx.font = `500 13px ${FONT}`;
-  const width = ctx.measureText(NOTE).width + 16;
-  const left = Math.max(placement.left + 6, Math.min((from.x + to.x - width) / 2, placement.left + placement.width - width - 6));
-  const top = from.y - 34 > placement.top ? from.y - 34 : Math.min(to.y + 8, placement.top + placement.height - 32);
+/**
+ * A word on the picture, kept inside it.
+ * @param {CanvasRenderingContext2D} ctx @param {Placement} placement
+ * @param {string} text @param {number} middle @param {number} wantedTop @param {number} weight
+ */
+function drawChip(ctx, placement, text, middle, wantedTop, weight) {
+  if (!text) return;
+  ctx.font = `${weight} 13px ${FONT}`;
+  const width = ctx.measureText(text).width + 16;
+  const left = Math.max(placement.left + 6, Math.min(middle - width / 2, placement.left + placement.width - width - 6));
+  const top = Math.min(wantedTop, placement.top + placement.height - 32);
   ctx.fillStyle = SHADE;
   ctx.beginPath();
   ctx.roundRect(left, top, width, 26, 8);
   ctx.fill();
   ctx.fillStyle = INK;
   ctx.textBaseline = "middle";
-  ctx.fillText(NOTE, left + 8, top + 14);
+  ctx.fillText(text, left + 8, top + 14);
 }
 
 /**
