@@ -52,6 +52,21 @@ def test_picture_that_stands_still_gives_the_same_places():
     assert np.median(errors_of(pairs, first_warp, warp)) < 0.1
 
 
+def test_failure_within_opencv_costs_no_pairs(monkeypatch):
+    find = cv2.findFundamentalMat
+
+    def failing(first, now, method, *others):
+        if method == cv2.USAC_MAGSAC:
+            raise cv2.error("!model.empty()")
+        return find(first, now, method, *others)
+
+    usual, *_ = followed(DRIVE)
+    monkeypatch.setattr(cv2, "findFundamentalMat", failing)
+    pairs, first_warp, warp = followed(DRIVE)
+    assert len(pairs.now) > 0.9 * len(usual.now)
+    assert np.quantile(errors_of(pairs, first_warp, warp), 0.95) < 1.0
+
+
 def test_places_cover_the_whole_picture():
     pairs, _, _ = followed([((0.0, 0.0), 1.0, 0.0)])
     quarters = {(u > 320.0, v > 240.0) for u, v in pairs.first}

@@ -147,5 +147,9 @@ def _is_inside(places: Points, shape: tuple[int, ...]) -> NDArray[np.bool_]:
 
 def _moves_with_the_rest(first: Points, now: Points) -> NDArray[np.bool_]:
     """Tell which pairs (n,) obey the epipolar geometry of most; those of a turn alone obey any."""
-    _, inliers = cv2.findFundamentalMat(first, now, cv2.USAC_MAGSAC, _EPIPOLAR, 0.999, 300)
+    try:
+        _, inliers = cv2.findFundamentalMat(first, now, cv2.USAC_MAGSAC, _EPIPOLAR, 0.999, 300)
+    except cv2.error:
+        # After a turn alone MAGSAC may polish a model that it has not found; the plain one then finds one.
+        _, inliers = cv2.findFundamentalMat(first, now, cv2.USAC_DEFAULT, _EPIPOLAR, 0.999, 300)
     return np.zeros(len(first), np.bool_) if inliers is None else np.asarray(inliers.ravel() > 0)
