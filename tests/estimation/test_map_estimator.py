@@ -1,6 +1,7 @@
 """The estimator against the closed form, its invariances, its named singular cases, and its honesty."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -196,14 +197,19 @@ def test_advice_is_a_move_that_does_what_it_says():
     sightings = noisy_run(views=2)
     estimate = estimate_point(sightings, ONE_PERCENT)
     words = estimate.advice.replace("°", "").split()
-    assert words[-3:] == ["halve", "the", "error"]
-    advance = float(words[words.index("cm") - 1]) / 100.0
+    assert "to halve the error:" in estimate.advice
+    advance = float(words[words.index("drive") + 1])
     turn = math.radians(float(words[1])) * (1 if "left" in words else -1) if words[0] == "turn" else 0.0
     pose = PlanarPose.from_rigid(sightings[-1].world_from_base).after(PlanarStep(turn, advance))
     seen = observed([pose], estimate.point_in_world)
     after = position_bound([*sightings, *seen], estimate.point_in_world, ONE_PERCENT)
     assert after is not None
     assert after.relative_sd <= 0.5 * estimate.relative_sd * 1.001
+    metres, percent = (
+        float(part) for part in re.findall(r": ±([\d.]+) m \(([\d.]+) %\)", estimate.advice)[0]
+    )
+    assert percent == pytest.approx(100.0 * after.relative_sd, rel=0.2)
+    assert metres == pytest.approx(percent / 100.0 * estimate.range, rel=0.15)
 
 
 def test_target_close_to_a_camera_plane_at_some_depth_is_no_error():

@@ -14,7 +14,13 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarStep
 
 _ADVANCES = (0.03, 0.06, 0.12, 0.2, 0.3, 0.45, 0.6)
-_TURNS_DEG = (0, 6, -6, 12, -12, 20, -20)
+_TURNS_DEG = (0, 6, -6, 12, -12, 20, -20, 35, -35)
+_NEAREST = 0.2
+"""No advice brings the camera nearer to the target [m]."""
+_HELPFUL = 0.9
+"""An error no smaller than this share of what it is does not make a move worth advising."""
+_ALMOST_UNKNOWN = 0.5
+"""A relative error this large is told in percent alone."""
 
 
 def advice_to_halve(
@@ -26,30 +32,46 @@ def advice_to_halve(
     nuisances: NuisancePriors | None = None,
     tap_noise: TapNoise | None = None,
 ) -> str:
-    """Return the shortest next move that halves the error of 1/Z at `point_in_world`, or what the best gains.
+    """Return the shortest next move that halves the error of 1/Z at `point_in_world`, or what the best gains,
+    in metres and percent (one sigma).
 
-    Moves are a turn on the spot and an advance with one more view at the end, the target kept in the picture.
+    Moves are a turn on the spot and an advance with one more view at the end, the target kept in the picture
+    and at a distance.
     """
     steps = [PlanarStep(math.radians(turn), advance) for advance in _ADVANCES for turn in _TURNS_DEG]
     bases = observations[-1].world_from_base.as_matrix() @ np.array([_matrix(step) for step in steps])
-    found = relative_sds_after(
+    sds = relative_sds_after(
         observations, motion, mount_noise, point_in_world, bases, nuisances=nuisances, tap_noise=tap_noise
-    ).tolist()
-    best: tuple[float, PlanarStep] | None = None
-    for first in range(0, len(steps), len(_TURNS_DEG)):
-        same_advance = slice(first, first + len(_TURNS_DEG))
-        pairs = zip(found[same_advance], steps[same_advance], strict=True)
-        scored = [pair for pair in pairs if math.isfinite(pair[0])]
-        for sd, step in scored[:1] + sorted(scored[1:], key=lambda pair: pair[0]):
-            if sd <= 0.5 * relative_sd:
-                return f"{_in_words(step)} more to halve the error"
-            if best is None or sd < best[0]:
-                best = sd, step
-    if best is None:
+    )
+    cameras = bases @ observations[-1].base_from_camera.as_matrix()
+    sds[np.linalg.norm(cameras[:, :3, 3] - point_in_world, axis=1) < _NEAREST] = np.inf
+    if not np.isfinite(sds).any():
         return "turn until the target is nearer the middle of the picture"
-    if best[0] > 0.9 * relative_sd:
-        return "more views of this kind will hardly help; look from another side"
-    return f"{_in_words(best[1])} more for an error {100.0 * (1.0 - best[0] / relative_sd):.0f} % smaller"
+    distance = float(np.linalg.norm(point_in_world - observations[0].world_from_camera.translation))
+    halving = _shortest_that_halves(sds, relative_sd)
+    best = int(np.argmin(sds)) if halving is None else halving
+    gain = f"{_error(sds[best], distance)} instead of {_error(relative_sd, distance)}"
+    if halving is not None:
+        return f"{_in_words(steps[best])} more to halve the error: {gain}"
+    if sds[best] > _HELPFUL * relative_sd:
+        return f"more views from here will hardly help ({gain} at best); look from another side"
+    return f"{_in_words(steps[best])} more: {gain}"
+
+
+def _shortest_that_halves(sds: FloatArray, relative_sd: float) -> int | None:
+    """Return the step with the shortest advance: straight ahead where that does, else the best turn."""
+    for first in range(0, len(sds), len(_TURNS_DEG)):
+        same_advance = sds[first : first + len(_TURNS_DEG)]
+        if same_advance[0] <= 0.5 * relative_sd:
+            return first
+        if same_advance.min() <= 0.5 * relative_sd:
+            return first + int(np.argmin(same_advance))
+    return None
+
+
+def _error(relative_sd: float, distance: float) -> str:
+    percent = f"{100.0 * relative_sd:.2g} %"
+    return percent if relative_sd > _ALMOST_UNKNOWN else f"±{relative_sd * distance:.3f} m ({percent})"
 
 
 def _matrix(step: PlanarStep) -> FloatArray:
@@ -60,7 +82,7 @@ def _matrix(step: PlanarStep) -> FloatArray:
 
 
 def _in_words(step: PlanarStep) -> str:
-    drive = f"drive {100.0 * step.advance:.0f} cm"
+    drive = f"drive {step.advance:.2f} m"
     if step.turn == 0.0:
         return drive
     side = "left" if step.turn > 0.0 else "right"

@@ -76,13 +76,19 @@ def floor_distance(world_from_base: PlanarPose, point_in_world: np.ndarray) -> f
 def _range_interval(
     here: PlanarPose, rays: Sequence[Ray], estimate: PointEstimate | None
 ) -> tuple[float, float] | None:
-    """Carry the interval along the reference ray over to the distance from where the base is now."""
+    """Carry the interval along the reference ray over to the distance from where the base is now.
+
+    The ray is laid through the estimated point, which rests on better poses than the ray itself.
+    """
     if estimate is None or estimate.range_interval_95 is None:
         return None
-    ray = rays[0]
+    ray, point = rays[0], estimate.point_in_world
+    aside = 0.0 if point is None or estimate.range is None else point - ray.at(estimate.range)
     near, far = estimate.range_interval_95
-    ends = [
-        floor_distance(here, ray.at(near)),
-        math.inf if far is None else floor_distance(here, ray.at(far)),
+    distances = [
+        floor_distance(here, ray.at(near) + aside),
+        math.inf if far is None else floor_distance(here, ray.at(far) + aside),
     ]
-    return min(ends), max(ends)
+    if point is not None:
+        distances.append(floor_distance(here, point))
+    return min(distances), max(distances)
