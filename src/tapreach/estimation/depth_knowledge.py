@@ -6,19 +6,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from tapreach.estimation.map_solver import Solution, inverse_depth_information
+from tapreach.estimation.near_normal import UP_TO, NearNormalPosterior
 from tapreach.estimation.range_posterior import RangePosterior, RangePrior, range_posterior
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
-_NORMAL = 0.05  # relative sd up to which the inverse depth, and so the range, may be called normal
-_TWO_SIDED_95 = 1.96
+_PLAIN_PARALLAX = 0.02  # sd times baseline; then noise cannot have made a target at infinity look near
+_ALIKE = 2.0  # ... where no depth in one camera is more than this many times that in another
 
 
 @dataclass(frozen=True)
 class DepthKnowledge:
     """inverse_depth 1/Z [1/m] and its sd in the first camera; slant: range over Z of the target's ray.
 
-    baseline [m]: the greatest distance between two cameras. posterior: over the range, where needed.
+    baseline [m]: the greatest distance between two cameras. posterior: over the range; None where 1/Z is
+    not known at all.
     least_sd: the larger of sd and the sd for a target at infinity, which noise cannot have made look near.
     """
 
@@ -27,7 +29,7 @@ class DepthKnowledge:
     least_sd: float
     slant: float
     baseline: float
-    posterior: RangePosterior | None
+    posterior: RangePosterior | NearNormalPosterior | None
 
     @property
     def relative_sd(self) -> float:
@@ -53,25 +55,33 @@ class DepthKnowledge:
     def range_interval(self) -> tuple[float, float | None] | None:
         """Return the central 95 % interval of the range [m]; with an open far end, the 95 % lower limit."""
         if self.posterior is None:
-            if self.relative_sd > _NORMAL:
-                return None
-            margin = _TWO_SIDED_95 * self.sd
-            return self.slant / (self.inverse_depth + margin), self.slant / (self.inverse_depth - margin)
+            return None
         if self.is_open_far:
             return self.posterior.quantile(0.05), None
-        return self.posterior.quantile(0.025), self.posterior.quantile(0.975)
+        return self.posterior.interval(0.025, 0.975)
 
 
 def depth_knowledge(model: ViewModel, solution: Solution, prior: RangePrior) -> DepthKnowledge:
-    """Return what the solution tells about the depth; the posterior only where 1/Z is not nearly normal."""
+    """Return what the solution tells of the depth; the whole profile only where 1/Z is not nearly normal."""
     sd = _sd(solution.on_target)
-    slant = float(np.linalg.norm([*solution.x[:2], 1.0]))
+    slant = math.hypot(*solution.x[:2].tolist(), 1.0)
     rho = solution.inverse_depth
-    is_normal = rho > 0.0 and sd <= _NORMAL * rho
-    posterior = None if is_normal or math.isinf(sd) else range_posterior(model, solution, prior)
+    posterior: RangePosterior | NearNormalPosterior | None = None
+    if rho > 0.0 and sd <= UP_TO * rho:
+        posterior = NearNormalPosterior(rho, sd, slant, prior.nearest, prior.farthest)
+    elif not math.isinf(sd):
+        posterior = range_posterior(model, solution, prior)
+    return DepthKnowledge(rho, sd, _least_sd(model, solution, sd), slant, model.baseline, posterior)
+
+
+def _least_sd(model: ViewModel, solution: Solution, sd: float) -> float:
+    """Return the larger of sd and that for a target at infinity, which is left out where plainly small."""
+    if solution.inverse_depth > 0.0 and sd * model.baseline < _PLAIN_PARALLAX:
+        depths = model.depths(solution.x[:3])
+        if depths.max() < _ALIKE * depths.min():
+            return sd
     at_infinity = model.linearised(model.on_ray(np.zeros(1)))
-    least_sd = max(sd, _sd(at_infinity.on_target()[0])) if at_infinity.is_in_front[0] else sd
-    return DepthKnowledge(rho, sd, least_sd, slant, model.baseline, posterior)
+    return max(sd, _sd(at_infinity.on_target()[0])) if at_infinity.is_in_front[0] else sd
 
 
 def _sd(on_target: FloatArray) -> float:

@@ -4,13 +4,14 @@ Everything but the inverse depth is profiled out, with Laplace's term for the wi
 (docs/estimation.md, 9). Where the range is well determined this agrees with the normal approximation.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from tapreach.errors import InputError
 from tapreach.estimation.gauss_newton import descended
-from tapreach.estimation.map_solver import Solution
+from tapreach.estimation.map_solver import Solution, inverse_depth_information
 from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
@@ -51,6 +52,10 @@ class RangePosterior:
         edges = np.concatenate([[logs[0]], (logs[1:] + logs[:-1]) / 2.0, [logs[-1]]])
         return float(np.exp(np.interp(probability, below, edges)))
 
+    def interval(self, low: float, high: float) -> tuple[float, float]:
+        """Return the ranges [m] below which the target lies with probability `low` and `high`."""
+        return self.quantile(low), self.quantile(high)
+
 
 def range_posterior(model: ViewModel, best: Solution, prior: RangePrior) -> RangePosterior | None:
     """Return the posterior over the range from the first camera; None where no range at all is feasible."""
@@ -69,8 +74,7 @@ def _grid(model: ViewModel, best: Solution, prior: RangePrior) -> FloatArray:
     everywhere = np.geomspace(prior.nearest, prior.farthest, _GRID)
     slant = float(np.linalg.norm([*best.x[:2], 1.0]))
     rho = best.inverse_depth
-    across = best.views.by_target[0, :, 2]
-    sd = 3.0 / max(float(np.sqrt(across @ across)), 1e-12)
+    sd = 1.0 / math.sqrt(max(inverse_depth_information(best.on_target), 1e-24))
     near_minimum = rho + sd * np.linspace(-4.0, 4.0, _GRID // 2)
     ranges = slant / near_minimum[near_minimum > 0.0]
     inside = ranges[(ranges > prior.nearest) & (ranges < prior.farthest)]

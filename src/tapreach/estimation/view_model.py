@@ -166,6 +166,11 @@ class ViewModel:
         is_used[view] = False
         return replace(self, is_used=is_used)
 
+    def depths(self, target: FloatArray) -> FloatArray:
+        """Return (n,): depths of the target (a, b, rho) in the cameras, poses without errors, times rho."""
+        a, b, rho = target
+        return np.asarray(self.nominal[:, 2] @ np.array([a, b, 1.0, rho]))
+
     def triangulated(self) -> FloatArray | None:
         """Return x (3 + k,) where all lines of sight nearly meet, poses without errors; None where singular.
 
