@@ -8,6 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.next_view import relative_sds_after
 from tapreach.estimation.odometry_noise import OdometryNoise
 from tapreach.geometry.pixel import Pixel
@@ -157,6 +158,39 @@ def test_floor_bounds_the_supposed_distance_from_above() -> None:
     distances = supposed_distances(ray, None)
     assert list(distances) == sorted(distances)
     assert distances[-1] == pytest.approx(np.hypot(0.9, 0.15), abs=1e-3)
+    farther = supposed_distances(ray, None, math.radians(1.0))
+    assert farther[:-1] == distances[:-1]
+    assert farther[-1] == pytest.approx(np.hypot(0.9, 0.15) * 1.11, rel=0.02)
+
+
+def test_estimate_gives_its_interval_and_its_middle() -> None:
+    point = ahead(1.0, 0.1)
+    views = [observation_of(seen(point, pose), ROBOT) for pose in (START, START.after(PlanarStep(0.2, 0.3)))]
+    estimate = estimate_point(views, OdometryNoise())
+    assert estimate.range_interval_95 is not None and estimate.range is not None
+    low, high = estimate.range_interval_95
+    ray = ray_of(seen(point, START), ROBOT)
+    assert supposed_distances(ray, estimate) == pytest.approx((low, estimate.range, high))
+
+
+def test_first_move_by_the_floor_alone_tells_nearly_as_much_as_the_best_for_the_true_range() -> None:
+    """Things of some centimetres on the floor; what may be too near ends the move there, as on the robot."""
+    losses = []
+    for distance in (0.7, 1.0, 1.5, 2.2, 3.0):
+        for side, up in ((-0.3, 0.01), (0.0, 0.09), (0.2, 0.05)):
+            point = ahead(distance, side * distance, up)
+            first = seen(point, START, 0.3)
+            ray = ray_of(first, ROBOT)
+            supposed = [ray.at(each) for each in supposed_distances(ray, None, math.radians(0.5))]
+            chosen = choose_move([first], START, supposed, 0.5, ROBOT)
+            best = choose_move([first], START, [point], 0.5, ROBOT)
+            assert chosen is not None and best is not None
+            grid = Grid(np.array([chosen.step.turn]), np.linspace(0.05, chosen.step.advance, 12))
+            ways = grid.stages_in_world(START)[0]
+            ways = ways[is_seen_and_clear(ways, point, ROBOT)]
+            losses.append(bound_score([first], ROBOT)(point, ways)[-1] / best.relative_sd)
+    assert np.median(losses) < 1.25
+    assert max(losses) < 1.6
 
 
 def test_above_the_horizon_any_distance_is_supposed() -> None:

@@ -24,7 +24,7 @@ MARGIN = 0.07
 NEAREST = 0.25
 """The camera comes no nearer to where the target may be [m]."""
 LONGEST_TURN = math.radians(60.0)
-SHORTEST_ADVANCE = 0.03
+SHORTEST_ADVANCE = 0.05
 """Nothing shorter is worth starting the wheels for [m]."""
 BESIDE = 0.05
 """So far beside the way it has come the base may back off [m]."""

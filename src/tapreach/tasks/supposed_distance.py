@@ -7,8 +7,8 @@ import math
 from tapreach.estimation.point_estimate import PointEstimate
 from tapreach.geometry.ray import Ray
 
-UNKNOWN = (0.6, 1.5, 4.0)
-"""Distances [m] planned for when nothing is known."""
+UNKNOWN = (0.6, 1.2, 2.0, 4.0)
+"""Distances [m] planned for when nothing is known, and beyond which the floor bounds nothing."""
 HEIGHTS = (0.55, 0.3, 0.08)
 """How high up a thing on the floor is tapped, as a share of the camera's height: things are small."""
 _FARTHEST = 6.0
@@ -32,12 +32,10 @@ def supposed_distances(
     if height <= 0.0 or depression <= 0.0:
         return UNKNOWN
     floor = height / math.sin(depression)
-    if floor * (1.0 - HEIGHTS[0]) > _FARTHEST:
-        return UNKNOWN
     higher = depression - tilt_sigma
     farthest = height / math.sin(higher) if higher > 0.0 else _FARTHEST
     supposed = [*(floor * (1.0 - share) for share in HEIGHTS), max(floor, farthest)]
-    return tuple(min(max(each, _NEAREST), _FARTHEST) for each in supposed)
+    return tuple(max(min(pair), _NEAREST) for pair in zip(supposed, UNKNOWN, strict=True))
 
 
 def _of_estimate(estimate: PointEstimate, low: float, high: float | None) -> tuple[float, ...]:
