@@ -1,16 +1,22 @@
 """One sighting of a target by the robot: what the tracker said of a frame, and where the base was then."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.step_knowledge import StepKnowledge
+from tapreach.geometry.camera import Camera
+from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
+from tapreach.geometry.pose import pose_to_matrix
 from tapreach.geometry.ray import Ray
-from tapreach.robot.config import RobotDescription
+from tapreach.robot.config import CameraSection, RobotDescription
 
 TIMING_SIGMA = 0.004
 """How far the capture time of a frame may be off against the odometry, one sigma [s]."""
@@ -68,9 +74,33 @@ def observation_of(
 
 def ray_of(sighting: Sighting, description: RobotDescription) -> Ray:
     """Return the line of sight in the world."""
-    (direction,) = description.camera.model().unproject([sighting.pixel.to_array()])
-    world_from_camera = sighting.world_from_base.to_rigid() * description.camera.mount.base_from_camera()
-    return Ray(world_from_camera.translation, world_from_camera.rotation.apply(direction))
+    return rays_of([sighting], description)[0]
+
+
+def rays_of(sightings: Sequence[Sighting], description: RobotDescription) -> tuple[Ray, ...]:
+    """Return the lines of sight in the world, in the order of the sightings."""
+    if not sightings:
+        return ()
+    camera, base_from_camera = _optics(description.camera)
+    poses = [sighting.world_from_base for sighting in sightings]
+    pixels = np.array([(sighting.pixel.u, sighting.pixel.v) for sighting in sightings])
+    directions = _turned(camera.unproject(pixels) @ base_from_camera[:3, :3].T, poses)
+    origins = _turned(np.tile(base_from_camera[:3, 3], (len(poses), 1)), poses)
+    origins[:, :2] += [(pose.x, pose.y) for pose in poses]
+    return tuple(map(Ray, origins, directions))
+
+
+@lru_cache(maxsize=4)
+def _optics(camera: CameraSection) -> tuple[Camera, FloatArray]:
+    """Return lens and base_from_camera (4, 4): asked for many times a frame, and always the same."""
+    return camera.model(), pose_to_matrix(camera.mount.base_from_camera())
+
+
+def _turned(vectors: FloatArray, poses: Sequence[PlanarPose]) -> FloatArray:
+    """Return vectors (n, 3), one for each base pose, with the axes of the world."""
+    c, s = np.array([(math.cos(pose.heading), math.sin(pose.heading)) for pose in poses]).T
+    x, y, z = vectors.T
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
 
 
 def sigma_of_timing(step: PlanarPose, duration: float, focal: float) -> float:
@@ -84,5 +114,5 @@ def sigma_of_timing(step: PlanarPose, duration: float, focal: float) -> float:
 
 def is_apart(first: PlanarPose, second: PlanarPose, distance: float, angle: float) -> bool:
     """Tell whether two poses of the base differ by more than `distance` [m] or `angle` [rad]."""
-    step = first.between(second)
-    return math.hypot(step.x, step.y) > distance or abs(wrapped(step.heading)) > angle
+    is_elsewhere = math.hypot(second.x - first.x, second.y - first.y) > distance
+    return is_elsewhere or abs(wrapped(second.heading - first.heading)) > angle
