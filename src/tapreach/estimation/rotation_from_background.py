@@ -17,7 +17,15 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from tapreach.estimation.background_solver import Fit, fit_step
 from tapreach.estimation.camera_step import CameraStep
 from tapreach.estimation.epipolar import PointPairs, point_pairs
-from tapreach.estimation.step_knowledge import NOTHING_SEEN, StepKnowledge, step_knowledge, swayed
+from tapreach.estimation.step_knowledge import (
+    HEADING,
+    KNOWN,
+    NOTHING_SEEN,
+    PITCH,
+    StepKnowledge,
+    loosened,
+    step_knowledge,
+)
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.gaussian import chi2_limit
@@ -30,6 +38,10 @@ _MOST_NOISE_PX = 3.0
 SWAY = 0.0005
 """What all pairs of two pictures have wrong in common, as a turn of the camera, one sigma [rad]. Measured in
 rendered rooms; a quarter of a pixel at 640 px.
+"""
+_SWAY_OF_WAY = 10.0
+"""The direction of travel is seen so many times worse than the turn: what of it lies in the mount's pitch is
+wrong in common by as much.
 """
 _POOR = 2.0
 """A turn seen with more than so many times the wheels' own error is not worth having."""
@@ -161,7 +173,9 @@ def _result(
 def _swayed(found: BackgroundRotation, step: CameraStep, sway: float) -> BackgroundRotation:
     covariance = found.covariance.copy()
     covariance[3:, 3:] += sway**2 * np.outer(step.turn_axis, step.turn_axis)
-    knowledge = swayed(found.knowledge, sway)
+    unsure = np.zeros(KNOWN)
+    unsure[HEADING], unsure[PITCH] = sway, _SWAY_OF_WAY * sway
+    knowledge = loosened(found.knowledge, unsure)
     turn_sd = math.hypot(found.turn_sd, sway)
     return replace(found, covariance=covariance, turn_sd=turn_sd, knowledge=knowledge)
 

@@ -15,7 +15,7 @@ from tapreach.geometry.finite import FloatArray
 
 PLANAR = 3
 """Errors of a step of the base come first: x, y [m], heading [rad], perturbing on the right."""
-HEADING = 2
+HEADING, PITCH = 2, PLANAR + 3
 KNOWN = PLANAR + 6
 """Then those of the mount base_from_camera: (translation, rotation), perturbing on the right."""
 _PLANAR_ROWS = [0, 1, 5]
@@ -55,17 +55,15 @@ def step_knowledge(
     return StepKnowledge((information + information.T) / 2.0, vector, has_slipped)
 
 
-def swayed(knowledge: StepKnowledge, sigma: float) -> StepKnowledge:
-    """Return what is known when the camera may also have turned by itself, sigma [rad], about the vertical.
-    """
-    if sigma == 0.0:
-        return knowledge
-    on_heading = knowledge.information[:, HEADING]
-    share = on_heading / (1.0 / sigma**2 + on_heading[HEADING])
+def loosened(knowledge: StepKnowledge, sigmas: FloatArray) -> StepKnowledge:
+    """Return what is known when the pictures may be wrong about e by errors of `sigmas` (9,) in common."""
+    unsure = np.flatnonzero(sigmas > 0.0)
+    of_unsure = knowledge.information[:, unsure]
+    share = np.linalg.solve(np.diag(sigmas[unsure] ** -2.0) + of_unsure[unsure], of_unsure.T).T
     return replace(
         knowledge,
-        information=knowledge.information - np.outer(share, on_heading),
-        vector=knowledge.vector - share * knowledge.vector[HEADING],
+        information=knowledge.information - share @ of_unsure.T,
+        vector=knowledge.vector - share @ knowledge.vector[unsure],
     )
 
 
