@@ -35,7 +35,7 @@ class CameraMatrices:
         """
         rho = homogeneous[:, 3]
         if self.by_normal.shape[2] == 0:
-            return np.zeros((*slopes.shape[:-1], 0))
+            return np.zeros((*points.shape[:2], slopes.shape[-2], 0))
         by_error = np.empty((*points.shape, 6))
         by_error[..., :3] = -rho[:, None, None, None] * self.back
         np.matmul(cross_matrices(points), self.slopes, out=by_error[..., 3:])
@@ -44,6 +44,17 @@ class CameraMatrices:
             onward = slopes @ (self.back @ self.into_view)
             by_x += onward @ self.in_first_by_normals(homogeneous)[:, None]
         return np.asarray(by_x)
+
+    def last(self) -> "CameraMatrices":
+        """Return only the last camera; the first must be without errors."""
+        return CameraMatrices(
+            self.matrices[:, -1:],
+            self.back[:, -1:],
+            self.slopes[:, -1:],
+            self.into_view[-1:],
+            self.by_normal[-1:],
+            None,
+        )
 
     def in_first_by_normals(self, homogeneous: FloatArray) -> FloatArray:
         """Return d (the target in the nominal first camera, times rho) / d z: (m, 3, k)."""

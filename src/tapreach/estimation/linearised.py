@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.lapack import dposv
+from scipy.linalg.lapack import dposv, dpotrf, dpotri
 
 from tapreach.geometry.finite import FloatArray
 
@@ -55,8 +55,22 @@ class Linearised:
             return np.asarray(dposv(noise[0], right[0])[1])[None]
         return np.asarray(np.linalg.solve(noise, right), dtype=np.float64)
 
+    @cached_property
+    def precision(self) -> FloatArray:
+        """C⁻¹ (2n, 2n) of a single point, for all that is asked of an answer; C ≥ I is far from singular."""
+        if self.by_errors.shape[2] == 0:
+            return np.eye(self.residuals.shape[1])
+        lower, _ = dpotrf(self.noise()[0], lower=1)
+        half = np.tril(dpotri(lower, lower=1)[0])
+        precision = half + half.T
+        precision.flat[:: len(half) + 1] *= 0.5
+        return np.asarray(precision)
+
     def on_target(self) -> FloatArray:
         """Return the information (m, 3, 3) on (a, b, rho), the pose errors marginalised: equation (7)."""
+        if len(self.x) == 1:
+            by_target = self.by_target[0]
+            return np.asarray(by_target.T @ (self.precision @ by_target))[None]
         return np.asarray(np.swapaxes(self.by_target, 1, 2) @ self.solved(self.by_target))
 
     def log_information_without_depth(self) -> FloatArray:

@@ -129,14 +129,23 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     if count == 1:
         return _one_step_errors(steps, noise)
     onward = carried(_ways(poses[0], poses[1:]))
-    backward = np.linalg.inv(onward)
+    backward = _inverses(onward)
     errors = np.zeros((count + 1, 3, 2 + 3 * count))
     errors[1:, :, :2] = onward @ np.cumsum(backward @ noise.scale_columns(steps), axis=0)
     in_start = backward @ covariance_root(noise.step_covariances(steps))
     by_step = onward[:, None] @ in_start
-    by_step[np.triu_indices(count, 1)] = 0.0  # a step moves no pose before it
+    by_step *= np.tri(count)[:, :, None, None]  # a step moves no pose before it
     errors[1:, :, 2:] = np.swapaxes(by_step, 1, 2).reshape(count, 3, 3 * count)
     return errors
+
+
+def _inverses(adjoints: FloatArray) -> FloatArray:
+    """Return the inverses (n, 3, 3) of what `carried` returns."""
+    inverses = np.zeros_like(adjoints)
+    inverses[:, :2, :2] = adjoints[:, :2, :2].mT
+    inverses[:, :2, 2:] = -(inverses[:, :2, :2] @ adjoints[:, :2, 2:])
+    inverses[:, 2, 2] = 1.0
+    return inverses
 
 
 def _one_step_errors(steps: FloatArray, noise: OdometryNoise) -> FloatArray:

@@ -56,9 +56,9 @@ def _gains_and_limits(model: ViewModel, solution: Solution) -> tuple[FloatArray,
     """
     views = solution.views
     residuals = views.residuals[0]
-    precision = views.solved(np.eye(len(residuals))[None])[0]
+    precision = views.precision
     pull = precision @ views.by_target[0]
-    damped = solution.on_target + 1e-12 * np.diag(np.diag(views.by_target[0].T @ views.by_target[0]))
+    damped = solution.on_target + 1e-12 * np.diag(np.diag(solution.on_target))
     remaining = precision - pull @ np.linalg.solve(damped, pull.T)
     if model.whitening is not None:  # a slip shifts one tap, and so what is expected of the next
         remaining = model.whitening.T @ remaining @ model.whitening

@@ -13,6 +13,7 @@ from tapreach.estimation.view_model import ViewModel, homogeneous_points
 from tapreach.geometry.finite import FloatArray
 
 _TARGET_COLUMNS = [0, 1, 3]
+_IDENTITY = np.eye(3)[None, None]
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,8 @@ class _Place:
 
     def misplaced(self, errors: CameraErrors, normals: FloatArray) -> "_Place":
         """Return it once more moved by the mount's own error, which moves the camera on the base."""
+        if not errors.by_mount.any():
+            return self
         by_normals = self.by_normals + errors.by_mount[:3] - cross_matrices(self.point) @ errors.by_mount[3:]
         shift, turn = np.split(errors.by_mount @ normals, 2)
         back, _ = backward_rotations(turn)
@@ -74,9 +77,10 @@ def _in_first(cameras: CameraMatrices, x: FloatArray) -> _Place:
 
 def _in_last(cameras: CameraMatrices, x: FloatArray) -> _Place:
     homogeneous = homogeneous_points(x[None])
+    if cameras.first is None:
+        cameras = cameras.last()
     points = cameras.matrices @ homogeneous[0]
-    identity = np.broadcast_to(np.eye(3), (*points.shape, 3))
-    by_normals = cameras.by_normals(identity, points, homogeneous)
+    by_normals = cameras.by_normals(_IDENTITY, points, homogeneous)
     return _dehomogenised(cameras.matrices[0, -1], by_normals[0, -1], homogeneous[0])
 
 
@@ -94,7 +98,7 @@ def _propagated(
     """Return the covariance of what depends on target and pose errors by (r, 3) and (r, k): equation (7b)."""
     views = solution.views
     seen = views.by_errors[0] @ by_normals.T
-    solved = views.solved(np.concatenate([views.by_target[0], seen], axis=1)[None])[0]
-    direct = by_target - seen.T @ solved[:, :3]
-    remaining = by_normals @ by_normals.T - seen.T @ solved[:, 3:]
+    solved = seen.T @ views.precision
+    direct = by_target - solved @ views.by_target[0]
+    remaining = by_normals @ by_normals.T - solved @ seen
     return np.asarray(direct @ target_covariance @ direct.T + remaining)

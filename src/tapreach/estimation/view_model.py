@@ -8,6 +8,7 @@ and Davison, "Unified inverse depth parametrization for monocular SLAM" (RSS 200
 Everything is computed for m vectors x at once, as plain arrays: several starts, or a grid of ranges.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -63,15 +64,14 @@ class ViewModel:
     @cached_property
     def positions(self) -> FloatArray:
         """Position of each camera in the first (n, 3) [m]."""
-        back = np.swapaxes(self.nominal[:, :, :3], 1, 2)
-        return np.asarray(-(back @ self.nominal[:, :, 3:])[:, :, 0])
+        return np.asarray(-(self.nominal[:, :, :3].mT @ self.nominal[:, :, 3:])[:, :, 0])
 
     @cached_property
     def baseline(self) -> float:
         """The greatest distance between two of the cameras used [m]."""
         used = self.positions[self.is_used]
-        between = used[:, None, :] - used[None, :, :]
-        return float(np.sqrt(np.max(np.sum(between * between, axis=2))))
+        between = used[:, None, :] - used
+        return math.sqrt(float((between * between).sum(axis=2).max()))
 
     def on_ray(self, inverse_depths: FloatArray) -> FloatArray:
         """Return x (m, 3 + k) for targets on the ray of the first view used, and poses without errors."""
