@@ -12,7 +12,7 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import load_robot
 from tapreach.server.markers import Mark, MarkerProjection
 from tapreach.server.views import target_view
-from tapreach.tasks.extent import Extent, ExtentSource
+from tapreach.tasks.extent import Extent
 from tapreach.tasks.target import Target, TargetSource
 
 CAMERA = load_robot(Path(__file__).resolve().parents[2] / "robots" / "fake.toml").camera
@@ -93,7 +93,7 @@ def sized(point) -> Target:
     offsets = np.array([[0.0, 0.1, 0.2], [0.0, -0.1, 0.2], [0.0, -0.1, 0.0], [0.0, 0.1, 0.0]])
     corners = np.array(point) + offsets
     size = BoxExtent(0.2, 0.2, 0.01, 0.02, corners)
-    return replace(target(point), extent=Extent(ExtentSource.BOX, size, ""))
+    return replace(target(point), extent=Extent(size, ""))
 
 
 def test_box_of_the_size_sticks_to_the_thing_wherever_the_robot_is():
@@ -113,7 +113,7 @@ def test_target_without_a_size_has_no_box_and_says_so():
 
 def test_size_is_told_with_its_sigmas_and_no_size_with_its_reason():
     told = target_view(sized(ahead(1.0)), HERE).extent
-    assert (told.source, told.width, told.height_sigma, told.reason) == ("box", 0.2, 0.02, "")
-    none = replace(target(ahead(1.0)), extent=Extent(ExtentSource.BOX, None, "straight below"))
+    assert (told.width, told.height_sigma, told.reason) == (0.2, 0.02, "")
+    none = replace(target(ahead(1.0)), extent=Extent(None, "straight below"))
     told = target_view(none, HERE).extent
     assert (told.width, told.width_sigma, told.reason) == (None, None, "straight below")

@@ -64,7 +64,6 @@ def test_box_on_the_floor_shows_its_size_and_marks_its_corners(play):
         await page.until(lambda: "target" in page.news)
         target = page.news["target"]
         assert (target["u"], target["v"]) == (320.0, 330.0)
-        assert target["extent"]["source"] == "box"
         assert 0.0 < target["extent"]["width"] < target["extent"]["height"] < 0.3
         assert target["extent"]["width_sigma"] > 0.0
 

@@ -15,7 +15,6 @@ POINTER = """([kind, type, x, y, id, primary]) => document.getElementById('pictu
   new PointerEvent(kind, {clientX: x, clientY: y, pointerId: id, isPrimary: primary, pointerType: type,
     button: kind === 'pointermove' ? -1 : 0, buttons: kind === 'pointerup' ? 0 : 1, bubbles: true}))"""
 EXTENT = {
-    "source": "box",
     "width": 0.0713,
     "height": 0.1184,
     "width_sigma": 0.0052,

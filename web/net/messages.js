@@ -321,7 +321,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {[number, number][]} region_in_world outline of the 95 % region on the floor
  * @property {[number, number, number, number][]} rays_in_world x, y, direction x, y
  * @property {boolean} is_following
- * @property {ExtentView | null} extent null: not asked for, or no position yet
+ * @property {ExtentView | null} extent null: no box was drawn, or no position yet
  */
 
 /**
@@ -416,10 +416,9 @@ export const PROTOCOL_VERSION = 1;
  */
 
 /**
- * How large a target is, in the upright plane through it that faces the camera [m]; null: not known.
+ * How large a boxed target is, in the upright plane that faced the camera [m]; null: not known.
  *
  * @typedef {object} ExtentView
- * @property {"box" | "outline"} source the operator's box, or guessed from the picture
  * @property {number | null} width
  * @property {number | null} height
  * @property {number | null} width_sigma one sigma, of the width

@@ -44,9 +44,9 @@ export class Boxes {
  */
 function drawSized(ctx, placement, { u: atU, v: atV, box }, target) {
   const points = box.map(([u, v]) => boxFromPicture(placement, u, v));
-  const isGuess = target.source === "floor" || target.extent?.source === "outline";
+  const isGuess = target.source === "floor";
   ctx.setLineDash(isGuess ? [5, 4] : []);
-  stroke(ctx, target.source === "floor" ? GUESS : ACCENT, () => {
+  stroke(ctx, isGuess ? GUESS : ACCENT, () => {
     points.forEach((point, index) => {
       for (const other of [points[(index + 1) % 4], points[(index + 3) % 4]]) if (other) arm(ctx, point, other);
     });

@@ -1,7 +1,5 @@
 """What stands inside messages of the control socket: speeds, lens, odometry, arm, lease, size of a target."""
 
-from typing import Literal
-
 from pydantic import BaseModel, ConfigDict, Field
 
 
@@ -63,9 +61,8 @@ class LeaseView(Message):
 
 
 class ExtentView(Message):
-    """How large a target is, in the upright plane through it that faces the camera [m]; null: not known."""
+    """How large a boxed target is, in the upright plane that faced the camera [m]; null: not known."""
 
-    source: Literal["box", "outline"] = Field(description="the operator's box, or guessed from the picture")
     width: float | None
     height: float | None
     width_sigma: float | None = Field(description="one sigma, of the width")

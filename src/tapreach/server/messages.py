@@ -312,7 +312,7 @@ class TargetView(Message):
     )
     rays_in_world: tuple[tuple[float, float, float, float], ...] = Field(description="x, y, direction x, y")
     is_following: bool
-    extent: ExtentView | None = Field(None, description="null: not asked for, or no position yet")
+    extent: ExtentView | None = Field(None, description="null: no box was drawn, or no position yet")
 
 
 class MoveView(Message):

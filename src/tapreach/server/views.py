@@ -89,7 +89,6 @@ def extent_view(extent: Extent) -> ExtentView:
     """Return a size for the page."""
     size = extent.size
     return ExtentView(
-        source=extent.source.value,
         width=size.width if size is not None else None,
         height=size.height if size is not None else None,
         width_sigma=size.width_sd if size is not None else None,

@@ -9,7 +9,7 @@ import numpy as np
 from tapreach.estimation import floor_guess as on_floor
 from tapreach.geometry.pixel import Pixel, require_inside
 from tapreach.robot.config import RobotDescription
-from tapreach.tasks.extent import ExtentSource, Outline, measured
+from tapreach.tasks.extent import measured
 from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.target import Target, TargetSource
@@ -34,8 +34,7 @@ async def floor_guess(context: TaskContext, tap: Tap, target_id: int) -> Target:
     target = target_on_floor(sighting, target_id, context.description)
     if box is None or target.point_in_world is None or target.point_cov_in_world is None:
         return target
-    outline = Outline(ExtentSource.BOX, box)
-    size = measured(outline, sighting, target.point_in_world, target.point_cov_in_world, context.description)
+    size = measured(box, sighting, target.point_in_world, target.point_cov_in_world, context.description)
     return replace(target, extent=size)
 
 

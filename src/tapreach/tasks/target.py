@@ -44,4 +44,4 @@ class Target:
     is_following: bool = False
     """True while the tracker has it in the picture."""
     extent: Extent | None = None
-    """How large it is; None where nobody has asked, or before there is a position."""
+    """How large it is; None where no box was drawn, or before there is a position."""

@@ -11,7 +11,7 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.ray import Ray
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import LocatedPoint
-from tapreach.tasks.extent import ExtentSource, Outline, extent_of
+from tapreach.tasks.extent import extent_of
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.task import Tap
@@ -25,14 +25,6 @@ class TargetReport:
     source: TargetSource
     tap: Tap
     description: RobotDescription
-    found_outline: Outline | None = None
-    """Where a thing that was only tapped ends, as far as the picture tells."""
-
-    @property
-    def outline(self) -> Outline | None:
-        """Where the thing ends in the tapped frame: the operator's box goes before what was found."""
-        box = self.tap.box
-        return Outline(ExtentSource.BOX, box) if box is not None else self.found_outline
 
     def target(
         self,
@@ -62,7 +54,7 @@ class TargetReport:
             range_interval=_range_interval(here, rays, estimate),
             rays_in_world=rays,
             is_following=is_following,
-            extent=extent_of(self.outline, sightings[0], estimate, self.description),
+            extent=extent_of(self.tap.box, sightings[0], estimate, self.description),
         )
 
 
