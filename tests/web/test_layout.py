@@ -5,6 +5,7 @@ from itertools import combinations
 
 import pytest
 from tests.web.protocol_server import WEB
+from tests.web.test_box import EXTENT
 from tests.web.test_panels import GUIDE, MARKER, TARGET
 
 SCREENS = [(1024, 768), (1180, 820), (390, 844), (844, 390), (1440, 900)]
@@ -34,7 +35,8 @@ def nothing(_page, _server):
 
 def with_target(page, server):
     server.markers = [MARKER | {"region": []}]
-    server.push(TARGET)
+    cut = "cut off at the picture's left and lower edge: at least so large"
+    server.push(TARGET | {"extent": EXTENT | {"reason": cut}})
     page.wait_for_selector("#card:not([hidden])")
 
 
