@@ -5,12 +5,13 @@ from functools import cache
 
 import numpy as np
 import pytest
-from drive import CAMERA, MOUNT, poses_along
+from drive import CAMERA, MOUNT, observed, poses_along
 from test_rotation_from_background import room, seen
 
 from tapreach.errors import InputError
 from tapreach.estimation.camera_step import camera_step
 from tapreach.estimation.corrected_drive import SeenStep, corrected_drive
+from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.motion_prior import MountNoise
 from tapreach.estimation.odometry_noise import OdometryNoise, pose_errors
 from tapreach.estimation.rotation_from_background import rotation_from_background
@@ -97,3 +98,12 @@ def test_errors_are_as_large_as_they_say():
 def test_step_between_poses_that_are_not_there_is_refused(pair):
     with pytest.raises(InputError, match="there are 4 poses"):
         corrected_drive(POSES, NOISE, MOUNT, MOUNT_NOISE, [SeenStep(*pair, NOTHING_SEEN)])
+
+
+def test_estimate_from_it_knows_the_mount_as_badly_as_with_mount_noise():
+    views = observed(POSES, np.array([1.5, 0.3, 0.2]))
+    drive = corrected_drive(POSES, NOISE, MOUNT, MOUNT_NOISE, [])
+    found = estimate_point(views, drive.errors, with_advice=False)
+    usual = estimate_point(views, NOISE, mount_noise=MOUNT_NOISE, with_advice=False)
+    for name in ("point_cov_in_world", "point_cov_in_base"):
+        assert getattr(found, name) == pytest.approx(getattr(usual, name), rel=0.02)

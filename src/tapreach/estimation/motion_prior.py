@@ -101,7 +101,7 @@ def camera_errors_with_next(
     of_mount = _mount_errors(mounts, mount_noise, priors)
     of_picture = _picture_errors(observations, next_pixels, len(mounts), priors.focal_scale, tap_bias_px)
     if of_mount is None and of_picture is None:
-        return CameraErrors(of_cameras, np.zeros((6, of_cameras.shape[2])))
+        return CameraErrors(of_cameras, with_poses)
     of_mount = np.zeros((len(mounts), 6, 0)) if of_mount is None else of_mount
     of_picture = np.zeros((len(mounts), 2, 0)) if of_picture is None else of_picture
     parts = [of_cameras, of_mount, np.zeros((len(mounts), 6, of_picture.shape[2]))]
@@ -228,9 +228,9 @@ def _covariance_errors(covariance: FloatArray, count: int) -> FloatArray:
 
 def _inverse_adjoints(mounts: Sequence[RigidTransform]) -> FloatArray:
     """Return (n, 6, 6): `_inverse_adjoint` of every mount, (6, 6) where, as mostly, there is but one."""
-    distinct = {id(each): each for each in mounts}
-    if len(distinct) == 1:
+    if all(mount is mounts[0] for mount in mounts):
         return _inverse_adjoint(mounts[0])
+    distinct = {id(each): each for each in mounts}
     adjoints = {key: _inverse_adjoint(mount) for key, mount in distinct.items()}
     return np.array([adjoints[id(mount)] for mount in mounts])
 
