@@ -54,6 +54,10 @@ class Operator:
         """Half the width of a thing [m]."""
         return self._objects[name].width / 2
 
+    def tall(self, name: str) -> float:
+        """Height of a thing [m]."""
+        return self._objects[name].tall
+
     def tap(self, name: str) -> None:
         """Tap the middle of a thing, as it is seen from where the wheels say that the robot is."""
         world_from_camera = self.pose().to_rigid() * self._base_from_camera
@@ -61,8 +65,25 @@ class Operator:
         (u, v) = self._camera.project(in_camera[None]).pixels[0]
         self.tap_pixel(float(u), float(v))
 
+    def draw_around(self, name: str) -> None:
+        """Draw a box around a thing that stands upright, as it is seen from where the wheels say."""
+        thing, radius = self._objects[name], self.radius_of(name)
+        ring = [(radius * math.cos(a), radius * math.sin(a)) for a in np.linspace(0.0, 2.0 * math.pi, 60)]
+        x, y = thing.position
+        rims = np.array([(x + dx, y + dy, thing.up + z) for dx, dy in ring for z in (0.0, thing.tall)])
+        world_from_camera = self.pose().to_rigid() * self._base_from_camera
+        pixels = self._camera.project(world_from_camera.inv().apply(rims)).pixels
+        self.page.mouse.move(*self._spot(*map(float, pixels.min(axis=0))))
+        self.page.mouse.down()
+        self.page.mouse.move(*self._spot(*map(float, pixels.max(axis=0))), steps=5)
+        self.page.mouse.up()
+
     def tap_pixel(self, u: float, v: float) -> None:
         """Tap a pixel of the picture."""
+        self.page.mouse.click(*self._spot(u, v))
+
+    def _spot(self, u: float, v: float) -> tuple[float, float]:
+        """Where a pixel of the picture is on the screen."""
         x, y = self.page.evaluate(
             """([u, v, width, height]) => {
                 const box = document.getElementById('picture').getBoundingClientRect();
@@ -72,7 +93,7 @@ class Operator:
             }""",
             [u, v, self._camera.size.width, self._camera.size.height],
         )
-        self.page.mouse.click(x, y)
+        return float(x), float(y)
 
     def read_position(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Read X, Y, Z and their 95 % half widths from the target card, base frame [m]."""

@@ -4,6 +4,8 @@ The page's deadman is real here: on a starved machine the robot may stop because
 for 200 ms, as it should. Then the operator does what a person would do: taps again.
 """
 
+import re
+
 import numpy as np
 from playwright.sync_api import expect
 from tests.scenarios.conftest import Operator
@@ -16,6 +18,19 @@ def test_one_tap_locates_the_red_can(operator: Operator) -> None:
     _, half_width = operator.read_position()
     assert operator.error("red can") < operator.radius_of("red can") + 0.03
     assert np.all(half_width < 0.15)
+
+
+def test_box_tells_how_large_the_red_can_is(operator: Operator) -> None:
+    for _ in range(TRIES):
+        operator.draw_around("red can")
+        expect(operator.page.locator("#card-title")).to_have_text("Target")
+        operator.wait_for_task()
+        if operator.page.locator("#card-xyz dd").count():
+            break
+    told = operator.page.locator("#card-size").inner_text()
+    width, _, height, _ = (float(word) for word in re.findall(r"[\d.]+", told))
+    assert abs(width - 200 * operator.radius_of("red can")) < 1.5, told
+    assert abs(height - 100 * operator.tall("red can")) < 2.5, told
 
 
 def test_two_taps_guided_locate_the_red_can(operator: Operator) -> None:
