@@ -14,7 +14,7 @@ from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.clock import MS, SECOND
 from tapreach.tasks.free_way import way_behind
-from tapreach.tasks.locate_end import End, closing_sentence, has_helped, is_worthwhile
+from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
 from tapreach.tasks.locate_watch import LOST_NS, MoveWatch
 from tapreach.tasks.move_choice import Choice
 from tapreach.tasks.planned_move import PlannedMove, footprint, wheel_tracks
@@ -66,7 +66,8 @@ def test_forward_move_ends_before_what_may_be_right_ahead() -> None:
 
 
 @pytest.mark.parametrize(
-    ("before", "now"), [((40.0, 240.0), (15.0, 240.0)), ((320.0, 440.0), (320.0, 470.0))]
+    ("before", "now"),
+    [((40.0, 240.0), (15.0, 240.0)), ((320.0, 440.0), (320.0, 470.0)), ((500.0, 240.0), (570.0, 240.0))],
 )
 def test_move_ends_before_the_target_leaves_the_picture(
     before: tuple[float, float], now: tuple[float, float]
@@ -93,24 +94,27 @@ def test_further_moves_must_promise_and_keep() -> None:
 @pytest.mark.parametrize(
     ("end", "words"),
     [
-        (End.REACHED, "known to 2 %, 3 % was wanted"),
+        (End.REACHED, ", 3 % was wanted"),
         (
             End.NO_GAIN,
-            "known to 2 %; the 0.30 m that it may still drive would not help much. Adviser: back 1 m",
+            "; the 0.30 m that it may still drive would not help much",
         ),
-        (End.WAY_USED_UP, "the way it may drive is used up. Adviser: back 1 m"),
-        (End.NO_MOVE, "no further move keeps it in the picture. Adviser: back 1 m"),
-        (End.LOST, "lost on the way (it is hidden), from the views before"),
+        (End.WAY_USED_UP, "; the way it may drive is used up"),
+        (End.NO_MOVE, "; no further move keeps it in the picture"),
+        (End.LOST, "; lost on the way (it is hidden), from the views before"),
     ],
 )
-def test_closing_sentence_says_what_and_why(end: End, words: str) -> None:
-    estimate = replace(estimated(1.0), relative_sd=0.02)
+def test_closing_reason_says_how_well_and_why(end: End, words: str) -> None:
+    assert closing_reason(0.02, end, 0.03, 0.3, "it is hidden") == f"range known to 2 %{words}"
+
+
+def test_closing_sentence_tells_what_was_found_and_what_would_help() -> None:
     target = Target(
-        1, TargetSource.LOCATE, "determined", "", "back 1 m", 1, 0.0, 0.0, None, None, 1.234, (1.2, 1.3)
+        1, TargetSource.LOCATE, "determined", "range known", "", 1, 0.0, 0.0, None, None, 1.234, (1.2, 1.3)
     )
-    sentence = closing_sentence(target, estimate, end, 0.03, 0.3, "it is hidden")
-    assert sentence.startswith("1.23 m away (95 %: 1.20 to 1.30 m)")
-    assert words in sentence
+    found = "1.23 m away (95 %: 1.20 to 1.30 m): range known"
+    assert closing_sentence(target) == found
+    assert closing_sentence(replace(target, advice="turn")) == f"{found}. Adviser: turn"
 
 
 def test_planned_move_tells_its_way_and_what_it_expects() -> None:

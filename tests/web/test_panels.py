@@ -149,9 +149,6 @@ def test_move_is_shown_with_what_it_should_bring_until_it_is_over(server, open_p
     server.push(NO_MOVE)
     page.wait_for_selector("#task-expects", state="hidden")
     page.wait_for_function(f"({GREEN})('plan') === 0")
-    server.push(task | {"state": "done", "progress": 1.0, "message": "1.20 m away"})
-    page.wait_for_selector("#toast:not([hidden])")
-    assert page.locator("#toast").inner_text() == "1.20 m away"
 
 
 def test_path_is_drawn_where_the_frames_meta_puts_it(server, open_page):

@@ -49,7 +49,6 @@ export class TaskPanel {
   /** @param {TaskView} task */
   tellEnd(task) {
     if (task.state === "cancelled") this.toast.tell(task.message || "Cancelled. The robot stands still.");
-    if (task.state === "done" && task.message) this.toast.tell(task.message);
     if (task.state === "failed") this.toast.tell(task.message || "This did not work.", "bad");
   }
 }

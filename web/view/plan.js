@@ -30,7 +30,7 @@ export class Plan {
    * @param {MoveView | null} move that is being made
    */
   draw(odometry, targets, halfView, move = null) {
-    this.fit(odometry, targets);
+    this.fit(odometry, targets, move);
     if (this.width === 0) return;
     this.drawView(halfView);
     for (const target of targets) this.drawTarget(odometry, target);
@@ -39,8 +39,8 @@ export class Plan {
     this.drawScale();
   }
 
-  /** @param {OdometryView} odometry @param {TargetView[]} targets */
-  fit(odometry, targets) {
+  /** @param {OdometryView} odometry @param {TargetView[]} targets @param {MoveView | null} move */
+  fit(odometry, targets, move) {
     const { canvas } = this;
     this.width = canvas.clientWidth;
     this.height = canvas.clientHeight;
@@ -48,6 +48,7 @@ export class Plan {
     canvas.height = Math.round(this.height * devicePixelRatio);
     this.ctx.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     const points = targets.filter((target) => target.point_in_world).map((target) => pointOf(odometry, target));
+    for (const [x, y] of move?.body_in_world ?? []) points.push(baseFromWorld(odometry, x, y));
     const ahead = Math.max(LEAST_REACH, ...points.map((point) => point.x * 1.25));
     const aside = Math.max(LEAST_REACH / 2, ...points.map((point) => Math.abs(point.y) * 1.3));
     this.pixelsPerMetre = Math.min((this.height * (ROBOT_AT - 0.04)) / ahead, (this.width * 0.48) / aside);
@@ -84,30 +85,21 @@ export class Plan {
     this.trace(odometry, move.body_in_world);
     ctx.closePath();
     ctx.stroke();
-    this.drawExpectation(odometry, move);
+    this.drawExpectation(expectation(move));
   }
 
-  /**
-   * Beside where the robot will stand, on the side with more room.
-   * @param {OdometryView} odometry @param {MoveView} move
-   */
-  drawExpectation(odometry, move) {
+  /** In the corner beside the scale bar. @param {string} words */
+  drawExpectation(words) {
     const { ctx } = this;
-    const words = expectation(move);
-    const corners = move.body_in_world.map(([x, y]) => this.place(baseFromWorld(odometry, x, y)));
-    const columns = corners.map(([column]) => column);
     ctx.font = `600 12px ${FONT}`;
     const width = ctx.measureText(words).width + 12;
-    const isRight = Math.max(...columns) + width + 6 < this.width;
-    const left = isRight ? Math.max(...columns) + 6 : Math.max(2, Math.min(...columns) - width - 6);
-    const middle = corners.reduce((sum, [, row]) => sum + row, 0) / corners.length;
-    const top = Math.min(this.height - 46, Math.max(2, middle - 10));
+    const left = this.width - width - 6;
     ctx.fillStyle = SHADE;
     ctx.beginPath();
-    ctx.roundRect(left, top, width, 20, 6);
+    ctx.roundRect(left, this.height - 25, width, 20, 6);
     ctx.fill();
     ctx.fillStyle = PATH;
-    ctx.fillText(words, left + 6, top + 14);
+    ctx.fillText(words, left + 6, this.height - 11);
   }
 
   drawRobot() {

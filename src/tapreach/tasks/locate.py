@@ -14,7 +14,7 @@ from tapreach.tasks.candidate_moves import SHORTEST_ADVANCE
 from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.free_way import way_behind
-from tapreach.tasks.locate_end import End, closing_sentence, has_helped, is_worthwhile
+from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
 from tapreach.tasks.locate_watch import MoveWatch, is_accurate
 from tapreach.tasks.move_choice import Choice, Room, planned_move
 from tapreach.tasks.planned_move import PlannedMove
@@ -218,13 +218,14 @@ class _Locating:
         return self._estimate is not None and self._estimate.status is Status.DETERMINED
 
     def _conclusion(self, end: End) -> str:
-        """Return the closing sentence."""
-        target = self._report.target(self._sightings(), self._estimate, not self._follower.loss)
-        if self._estimate is None or target.range is None or target.range_interval is None:
-            return self._no_position(target)
-        return closing_sentence(
-            target, self._estimate, end, self._accuracy, self._way_left, self._follower.loss
-        )
+        """Show why it ends and return the closing sentence."""
+        found, loss = self._estimate, self._follower.loss
+        if found is None or not self._is_determined:
+            return self._no_position(self._report.target(self._sightings(), found, not loss))
+        reason = closing_reason(found.relative_sd, end, self._accuracy, self._way_left, loss)
+        target = self._report.target(self._sightings(), found, not loss, reason)
+        self._context.show_target(target)
+        return closing_sentence(target)
 
     def _no_position(self, target: Target) -> str:
         if self._driven == 0.0:

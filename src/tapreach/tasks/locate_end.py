@@ -36,27 +36,30 @@ def has_helped(before: PointEstimate | None, now: PointEstimate | None) -> bool:
     return now.relative_sd < HELPED * before.relative_sd
 
 
-def closing_sentence(
-    target: Target, estimate: PointEstimate, end: End, wanted: float, way_left: float, loss: str
-) -> str:
-    """Return what was found and why nothing more was done, for a target that has a position.
-
-    wanted: the relative error that was. way_left [m]: what might still be driven.
-    """
+def closing_sentence(target: Target) -> str:
+    """Return what was found, why nothing more was done, and what would help, of a target with a position."""
     assert target.range is not None and target.range_interval is not None
     low, high = target.range_interval
-    found = f"{target.range:.2f} m away (95 %: {low:.2f} to {high:.2f} m)"
-    known = f"known to {_percent(estimate.relative_sd)}"
+    found = f"{target.range:.2f} m away (95 %: {low:.2f} to {high:.2f} m): {target.reason}"
+    return f"{found}. Adviser: {target.advice}" if target.advice else found
+
+
+def closing_reason(relative_sd: float, end: End, wanted: float, way_left: float, loss: str) -> str:
+    """Return how well the range is known (one sigma) and why no more was done for it.
+
+    wanted: the relative error that was. way_left [m]: what might still be driven. loss: why it was lost.
+    """
+    known = f"range known to {_percent(relative_sd)}"
     if end is End.REACHED:
-        return f"{found}: {known}, {_percent(wanted)} was wanted"
+        return f"{known}, {_percent(wanted)} was wanted"
     if end is End.LOST:
-        return f"{found}: {known}; lost on the way ({loss}), from the views before"
+        return f"{known}; lost on the way ({loss}), from the views before"
     why = {
         End.NO_GAIN: f"the {way_left:.2f} m that it may still drive would not help much",
         End.WAY_USED_UP: "the way it may drive is used up",
         End.NO_MOVE: "no further move keeps it in the picture",
     }[end]
-    return f"{found}: {known}; {why}" + (f". Adviser: {target.advice}" if target.advice else "")
+    return f"{known}; {why}"
 
 
 def _percent(relative_sd: float) -> str:

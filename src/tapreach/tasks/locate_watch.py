@@ -55,9 +55,13 @@ class MoveWatch:
         return float(np.linalg.norm(nearest - camera)) < NEAREST
 
     def _leaves_the_picture(self, before: Sighting, last: Sighting) -> bool:
-        return self._from_edge(last) < min(EDGE, self._from_edge(before))
+        """Tell whether it would be too near to the edge in the next frame, going on as it does."""
+        now, then = last.pixel, before.pixel
+        coming = self._from_edge(2.0 * now.u - then.u, 2.0 * now.v - then.v)
+        return coming < EDGE and coming < self._from_edge(now.u, now.v)
 
-    def _from_edge(self, sighting: Sighting) -> float:
+    def _from_edge(self, u: float, v: float) -> float:
+        """Return how far inside the picture a pixel is, as a share of the picture."""
         size = self.description.camera.model().size
-        u, v = sighting.pixel.u / size.width, sighting.pixel.v / size.height
-        return min(u, v, 1.0 - u, 1.0 - v)
+        across, down = u / size.width, v / size.height
+        return min(across, down, 1.0 - across, 1.0 - down)
