@@ -34,6 +34,9 @@ class Linearised:
     def costs(self) -> FloatArray:
         """(m,): squared residuals over sigma plus |z|², equation (6); infinite where not in front."""
         normals = self.x[:, 3:]
+        if len(normals) == 1:
+            cost = self.residuals[0] @ self.residuals[0] + normals[0] @ normals[0]
+            return np.array([cost if self.is_in_front[0] else np.inf])
         costs = np.sum(self.residuals * self.residuals, axis=1) + np.sum(normals * normals, axis=1)
         return np.where(self.is_in_front, costs, np.inf)
 
@@ -43,7 +46,7 @@ class Linearised:
         if damping is not None and damping.any():
             covariance /= (1.0 + damping)[:, None, None]
         rows = covariance.shape[1]
-        covariance.reshape(len(covariance), -1)[:, :: rows + 1] += 1.0
+        covariance.reshape(len(covariance), rows * rows)[:, :: rows + 1] += 1.0
         return np.asarray(covariance)
 
     def solved(self, right: FloatArray, damping: FloatArray | None = None) -> FloatArray:
@@ -61,9 +64,9 @@ class Linearised:
         if self.by_errors.shape[2] == 0:
             return np.eye(self.residuals.shape[1])
         lower, _ = dpotrf(self.noise()[0], lower=1)
-        half = np.tril(dpotri(lower, lower=1)[0])
+        half = dpotri(lower, lower=1)[0]  # above the diagonal it holds zeros, as dpotrf leaves them
         precision = half + half.T
-        precision.flat[:: len(half) + 1] *= 0.5
+        precision.ravel()[:: len(half) + 1] *= 0.5
         return np.asarray(precision)
 
     def on_target(self) -> FloatArray:

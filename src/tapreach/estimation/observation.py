@@ -40,9 +40,9 @@ class Observation:
         return np.asarray(self.world_from_base.as_matrix(), dtype=np.float64)
 
     @cached_property
-    def camera_matrix(self) -> FloatArray:
-        """world_from_camera as (4, 4)."""
-        return np.asarray(self.base_matrix @ self.base_from_camera.as_matrix())
+    def mount_matrix(self) -> FloatArray:
+        """base_from_camera as (4, 4)."""
+        return np.asarray(self.base_from_camera.as_matrix(), dtype=np.float64)
 
     @property
     def world_from_camera(self) -> RigidTransform:

@@ -57,10 +57,10 @@ def points_in_world_and_base(
     target_covariance (3, 3): of (a, b, rho).
     """
     cameras = model.cameras(solution.x[None])
-    world_from_camera = first.world_from_base.as_matrix() @ first.base_from_camera.as_matrix()
+    world_from_camera = first.base_matrix @ first.mount_matrix
     world = _in_first(cameras, solution.x).moved(world_from_camera)
     seen = _in_last(cameras, solution.x)
-    base = seen.misplaced(model.errors, solution.x[3:]).moved(last.base_from_camera.as_matrix())
+    base = seen.misplaced(model.errors, solution.x[3:]).moved(last.mount_matrix)
     by_target = np.concatenate([world.by_target, base.by_target])
     by_normals = np.concatenate([world.by_normals, base.by_normals])
     joint = _propagated(solution, target_covariance, by_target, by_normals)

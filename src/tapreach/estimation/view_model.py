@@ -239,13 +239,21 @@ def camera_ways(observations: Sequence[Observation], further: FloatArray) -> Flo
 
     further (c, 4, 4): world_from_camera of further cameras.
     """
-    world_from_camera = np.array([view.camera_matrix for view in observations])
+    world_from_camera = np.array([view.base_matrix for view in observations]) @ _mounts(observations)
     if len(further):
         world_from_camera = np.concatenate([world_from_camera, further])
     rotations, positions = world_from_camera[:, :3, :3].mT, world_from_camera[:, :3, 3]
     apart = np.empty((len(positions), 3, 4))
     apart[:, :, :3], apart[:, :, 3] = world_from_camera[0, :3, :3], positions[0] - positions
     return np.asarray(rotations @ apart)
+
+
+def _mounts(observations: Sequence[Observation]) -> FloatArray:
+    """Return the matrix (4, 4) of the one mount that all views share, or all of them (n, 4, 4)."""
+    first = observations[0]
+    if all(view.base_from_camera is first.base_from_camera for view in observations):
+        return first.mount_matrix
+    return np.array([view.mount_matrix for view in observations])
 
 
 def pixel_weights(camera: Camera, normalised: FloatArray) -> FloatArray:
