@@ -10,7 +10,7 @@ import pytest
 from tapreach.bench.locate_faults import MOST_SLIP, MOUNT_SHIFT, draw_faults, robot_file
 from tapreach.bench.locate_figures import arm_section
 from tapreach.bench.locate_kept import keep, read_kept
-from tapreach.bench.locate_outcome import SURE_REGION, Outcome
+from tapreach.bench.locate_outcome import SURE_DEPTH, SURE_REGION, Outcome
 from tapreach.bench.locate_plan import Arm, scene_of
 from tapreach.bench.locate_stage import FARTHEST, NEAREST, draw_stage
 from tapreach.drivers.sim.faults import SimFaults
@@ -20,11 +20,12 @@ from tapreach.errors import ConfigError
 ANSWER = Outcome(
     tap=3, arm=str(Arm.CHOSEN), scene="room", thing="mug", distance=1.2, status="determined", note="",
     seconds=5.0, driven=0.3, scale=1.01, moved=0.0, views=6, wall_seconds=4.0, range_error=0.01,
-    position_error=0.02, nees=2.0, nees_position=2.5, holds_range=True, relative_sd=0.012, track_px=0.4,
+    position_error=0.02, nees=2.0, nees_depth=1.5, nees_position=2.5, holds_range=True,
+    relative_sd=0.012, track_px=0.4,
 )  # fmt: skip
 REFUSED = replace(
     ANSWER, tap=4, status="failed", note="lost the tapped place: hidden. Tap it again", range_error=None,
-    position_error=None, nees=None, nees_position=None, holds_range=None, relative_sd=None,
+    position_error=None, nees=None, nees_depth=None, nees_position=None, holds_range=None, relative_sd=None,
 )  # fmt: skip
 
 
@@ -70,8 +71,9 @@ def test_wrong_is_what_is_far_off_and_sure_of_itself() -> None:
     far = replace(ANSWER, range_error=-0.08)
     assert not ANSWER.is_wrong
     assert not far.is_wrong, "its region is wide enough"
-    assert replace(far, nees=SURE_REGION + 1.0).is_wrong
-    assert not replace(ANSWER, nees=SURE_REGION + 1.0).is_wrong, "it is near enough"
+    assert replace(far, nees_depth=SURE_DEPTH + 1.0).is_wrong
+    assert replace(far, nees_position=SURE_REGION + 1.0).is_wrong
+    assert not replace(ANSWER, nees_depth=SURE_DEPTH + 1.0).is_wrong, "it is near enough"
     assert not REFUSED.is_wrong
 
 

@@ -122,12 +122,14 @@ def _judged(
     in_camera = before.truth.camera_pose.inv().apply(before.surface.point_in_world)
     error, covariance = _error_in_base(estimate, running, after, point)
     bearing_depth = np.array([*estimate.bearing, estimate.inverse_depth])
+    cov = estimate.bearing_inverse_depth_cov
     low, high = estimate.range_interval_95
     return replace(
         outcome,
         range_error=estimate.range / outcome.distance - 1.0,
         position_error=float(np.linalg.norm(error)) / outcome.distance,
-        nees=region_distance(bearing_depth, estimate.bearing_inverse_depth_cov, in_camera),
+        nees=region_distance(bearing_depth, cov, in_camera),
+        nees_depth=(1.0 / float(in_camera[2]) - estimate.inverse_depth) ** 2 / float(cov[2, 2]),
         nees_position=squared_mahalanobis(error, covariance),
         holds_range=low <= outcome.distance and (high is None or outcome.distance <= high),
         relative_sd=estimate.relative_sd,
@@ -182,6 +184,7 @@ def _by_paper(outcome: Outcome, task: FixedMove, before: Before, description: Ro
         range_error=error,
         position_error=None,
         nees=None,
+        nees_depth=None,
         nees_position=None,
         holds_range=None,
         relative_sd=None,

@@ -13,7 +13,8 @@ _DISTANCES = (0.5, 1.0, 1.5, 2.0, 3.0)
 _NOTHING = "—"
 COLUMNS = (
     "taps", "refused", "wrong", "range error: median", "95 %", "position: median", "95 %",
-    "95 % region holds", "range interval holds", "NEES/3", "driven", "time to answer",
+    "range interval holds", "NEES of 1/Z", "region of position holds", "NEES/3 of position",
+    "driven", "time to answer",
 )  # fmt: skip
 
 
@@ -41,9 +42,10 @@ def cells(part: Sequence[Outcome]) -> tuple[str, ...]:
         _shown(percent(ranges, 95.0), " %"),
         _shown(percent(positions, 50.0), " %"),
         _shown(percent(positions, 95.0), " %"),
-        _shown(100.0 * share(answered, lambda each: each.holds), " %"),
         _shown(100.0 * share(answered, lambda each: bool(each.holds_range)), " %"),
-        _shown(nees(answered), ""),
+        _shown(mean([each.nees_depth for each in answered]), ""),
+        _shown(100.0 * share(answered, lambda each: each.holds_position), " %"),
+        _shown(mean([each.nees_position for each in answered]) / 3.0, ""),
         _shown(100.0 * at([each.driven for each in part], 50.0), " cm"),
         _shown(at([each.seconds for each in part], 50.0), " s"),
     )
@@ -59,10 +61,10 @@ def position_error(outcome: Outcome) -> float:
     return outcome.position_error or 0.0
 
 
-def nees(answered: Sequence[Outcome]) -> float:
-    """Return the mean squared Mahalanobis distance over its 3 degrees of freedom; NaN of none."""
-    values = [outcome.nees for outcome in answered if outcome.nees is not None]
-    return float(np.mean(values)) / 3.0 if values else math.nan
+def mean(values: Sequence[float | None]) -> float:
+    """Return the mean of those that are there; NaN of none."""
+    there = [value for value in values if value is not None]
+    return float(np.mean(there)) if there else math.nan
 
 
 def share(part: Sequence[Outcome], is_so: Callable[[Outcome], bool]) -> float:
