@@ -295,3 +295,33 @@ def test_view_that_alone_moved_is_never_left_out():
     slipped = Observation(off, 1.0, CAMERA, moved.world_from_base, MOUNT)
     estimate = estimate_point([*still, slipped], ONE_PERCENT)
     assert len(still) not in estimate.rejected_views
+
+
+def seen_from(poses, pixels, sigma=1.0):
+    mount = camera_mount((0.10, 0.0, 0.15), math.radians(10.0))
+    camera = Camera(ImageSize(640, 480), 600.0, 600.0, 319.5, 239.5)
+    return [
+        Observation(Pixel(*pixel), sigma, camera, pose.to_rigid(), mount)
+        for pose, pixel in zip(poses, pixels, strict=True)
+    ]
+
+
+def test_unrelated_taps_without_any_feasible_range_are_no_error():
+    poses = [
+        PlanarPose(),
+        PlanarPose(0.24303729365109084, -0.028567914587079385, -0.11700846707768496),
+        PlanarPose(0.24303729365109084, -0.028567914587079385, -0.47838104643421253),
+        PlanarPose(0.09802500085168511, 0.046628909905145025, -0.47838104643421253),
+    ]
+    pixels = [
+        (254.78272363327332, 9.137908484131392),
+        (175.15970747065407, 386.7162870027972),
+        (136.250271429605, 116.37473870724163),
+        (290.67859705368915, 389.05316696744984),
+    ]
+    estimate = estimate_point(
+        seen_from(poses, pixels, 1.5198090265786943),
+        OdometryNoise.per_step(0.011535200441769753),
+        with_advice=False,
+    )
+    assert estimate.point_in_world is None

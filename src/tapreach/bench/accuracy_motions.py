@@ -147,7 +147,6 @@ def _safety_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
     )
     share = 100.0 * flagged / max(singular.total(), 1)
     behind = sum(result.behind for result in results)
-    first = exceptions[0] if exceptions else ""
     return (
         Figure("motions", total, "", None, f"wandering: {of_wandering}"),
         Figure("singular: flagged", share, "%", at_least(100.0), of_singular),
@@ -156,9 +155,7 @@ def _safety_figures(results: list[MotionResult]) -> tuple[Figure, ...]:
             "hardly moving: given a range with two ends", tiny[Status.DETERMINED], "", exactly(0), of_tiny
         ),
         Figure("answers behind a camera", behind, "", exactly(0), f"tapped anywhere: {of_anywhere}"),
-        Figure(
-            "exceptions and warnings", len(exceptions), "", exactly(0), exceptions[0] if exceptions else ""
-        ),
+        Figure("exceptions and warnings", len(exceptions), "", exactly(0), "; ".join(exceptions[:1])),
     )
 
 

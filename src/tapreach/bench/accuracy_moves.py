@@ -47,7 +47,7 @@ from tapreach.tasks.move_choice import FREE_OF_CHARGE, choose_move
 
 PAPERS = PlanarStep(math.radians(12.0), 0.2)
 SIGMA_PX, ODOMETRY = 1.0, 0.01
-SELDOM = 5
+SELDOM = 3
 """Trials of a move for one in a setting: 96 moves are tried, and little chance is left in them."""
 PROTOCOLS = {"two taps": TWO_TAPS, "views on the way": ON_THE_WAY}
 

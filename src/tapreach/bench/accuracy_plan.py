@@ -38,10 +38,10 @@ class AccuracyPlan:
     """
 
     seed: int
-    trials: int = 500
+    trials: int = 250
     motions: int = 100_000
-    comparisons: int = 200
-    rounds: int = 10
+    comparisons: int = 100
+    rounds: int = 20
     targets: int = 4
     jobs: int = 1
     is_smoke: bool = False

@@ -18,7 +18,7 @@ from tapreach.bench.spread import spread
 from tapreach.geometry.finite import FloatArray
 
 SLIP_PX, SIGMA_PX, VIEWS = 20.0, 3.0, 5
-TIMES = 4
+TIMES = 8
 """Trials at each depth for one in a setting: an alarm in a hundred needs many to be told from two."""
 
 

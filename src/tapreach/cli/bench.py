@@ -57,9 +57,9 @@ def control(
 @bench.command()
 def accuracy(
     smoke: Smoke = False,
-    trials: Annotated[int, typer.Option(min=2, help="in each of 48 settings, more where needed")] = 500,
+    trials: Annotated[int, typer.Option(min=2, help="in each of 48 settings, more where needed")] = 250,
     motions: Annotated[int, typer.Option(min=30, help="random ones, a fifth of them singular")] = 100_000,
-    comparisons: Annotated[int, typer.Option(min=1, help="trials in each setting beside the peers")] = 200,
+    comparisons: Annotated[int, typer.Option(min=1, help="trials in each setting beside the peers")] = 100,
     part: Annotated[Chapter | None, typer.Option(help="run this one alone")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="processes, but for what is timed")] = 1,
     seed: Annotated[

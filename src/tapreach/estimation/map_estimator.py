@@ -4,6 +4,7 @@ It finds the most probable target together with the errors of the poses, instead
 is what keeps the reported region honest (docs/estimation.md).
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -79,7 +80,7 @@ def _answer(
     status, reason = verdict(model, solution, depth)
     rejected = tuple(int(i) for i in np.flatnonzero(~model.is_used))
     residuals_px = _residuals_px(model, solution)
-    if status is Status.DEGENERATE:
+    if status is Status.DEGENERATE or math.isinf(depth.sd):  # what contradicts itself may be singular too
         return _unknown(status, reason, model, residuals_px)
     covariance = covariance_of(solution.on_target)
     is_determined = status is Status.DETERMINED

@@ -36,8 +36,8 @@ class Solution:
 
 
 def solve(model: ViewModel) -> Solution | None:
-    """Return the best minimum over several starts in depth; None where no depth has it before all cameras, and
-    where the cameras used have all stood in one place.
+    """Return the best minimum over several starts in depth; None where no depth has it before all cameras,
+    and where the cameras used have all stood in one place.
 
     Where the lines of sight nearly meet well before infinity there is but one, found at once.
     """
