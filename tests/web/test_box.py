@@ -82,13 +82,23 @@ def test_floor_guess_takes_a_box_too(server, open_page):
     assert len(message["box"]) == 4
 
 
-@pytest.mark.parametrize("kind", ["touch", "pen"])
-def test_finger_and_pen_draw_a_box_as_the_mouse_does(server, open_page, kind):
+def test_finger_draws_a_box_as_the_mouse_does(server, open_page):
+    page = open_page(SIZES["phone"])
+    (x, y), (right, bottom) = spot(page, server, 360.0, 230.0), spot(page, server, 470.0, 350.0)
+    browser = page.context.new_cdp_session(page)
+    browser.send("Emulation.setTouchEmulationEnabled", {"enabled": True})
+    for kind, *place in (("Start", x, y), ("Move", x + 30, y + 25), ("Move", right, bottom), ("End",)):
+        points = [{"x": place[0], "y": place[1]}] if place else []
+        browser.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+    assert server.wait_for("tap")["box"] == pytest.approx([360.0, 230.0, 470.0, 350.0], abs=1.0)
+
+
+def test_pen_draws_a_box_as_the_mouse_does(server, open_page):
     page = open_page()
     (x, y), (right, bottom) = spot(page, server, 360.0, 130.0), spot(page, server, 470.0, 250.0)
     for name, place in (("down", (x, y)), ("move", (x + 40, y + 30)), ("move", (right, bottom))):
-        page.evaluate(POINTER, [f"pointer{name}", kind, *place, 5, True])
-    page.evaluate(POINTER, ["pointerup", kind, right, bottom, 5, True])
+        page.evaluate(POINTER, [f"pointer{name}", "pen", *place, 5, True])
+    page.evaluate(POINTER, ["pointerup", "pen", right, bottom, 5, True])
     assert server.wait_for("tap")["box"] == pytest.approx([360.0, 130.0, 470.0, 250.0], abs=0.01)
 
 
