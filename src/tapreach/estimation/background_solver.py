@@ -14,7 +14,7 @@ _LEAST_NOISE = 0.05
 """No tracker is better than so many pixels."""
 _LEAST_WAY = 0.0005
 """A camera that moved less than this [m] has only turned; its parallax is lost in the noise."""
-_ROBUST_STEPS, _FINAL_STEPS, _ROUNDS = 12, 2, 3
+_ROBUST_STEPS, _FINAL_STEPS, _ROUNDS = 8, 1, 3
 _SIGMAS_ASIDE = np.linspace(-10.0, 10.0, 31)
 _GATE = 3.0
 _HIDDEN_OUTLIERS = 20.0
@@ -69,7 +69,7 @@ def _robust(pairs: PointPairs, step: CameraStep) -> tuple[FloatArray, float]:
     for _ in range(_ROBUST_STEPS):
         weights = _cauchy_weights(residuals)
         moved = _improved(residuals, jacobian, weights, normals)
-        is_still = bool(np.linalg.norm(moved - normals) < 0.01)
+        is_still = bool(np.linalg.norm(moved - normals) < 0.03)
         normals = moved
         residuals, jacobian = residuals_at(pairs, step, normals)
         if is_still:

@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.corrected_drive import SeenStep, corrected_drive
 from tapreach.estimation.motion_prior import PoseErrors
+from tapreach.estimation.odometry_noise import pose_errors
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Sighting
@@ -43,14 +44,11 @@ def straightened(sightings: Sequence[Sighting], description: RobotDescription) -
         replace(sighting, world_from_base=carry.compose(pose))
         for sighting, pose in zip(sightings, corrected.poses, strict=True)
     )
-    by_wheels = corrected_drive(poses, *known, []).errors
-    helps = bool(steps) and _heading_sd(corrected.errors) <= _HELPS * _heading_sd(by_wheels)
+    by_wheels = float(np.linalg.norm(pose_errors(poses, known[0])[-1, 2]))
+    left = float(np.linalg.norm(corrected.errors.by_base[-1, 5]))
+    helps = bool(steps) and left <= _HELPS * by_wheels
     reason = "" if helps else _why_not(sightings)
     return Straightened(straight, corrected.base_from_camera, corrected.errors, reason)
-
-
-def _heading_sd(errors: PoseErrors) -> float:
-    return float(np.linalg.norm(errors.by_base[-1, 5]))
 
 
 def _seen_steps(sightings: Sequence[Sighting]) -> list[SeenStep]:
