@@ -8,7 +8,7 @@ from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
 _ITERATIONS = 8
-_TOLERANCE = 1e-8  # of the squared residuals still to gain: 1e-4 sigma
+_TOLERANCE = 1e-6  # of the squared residuals still to gain: 1e-3 sigma
 
 
 def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
@@ -18,7 +18,7 @@ def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
     then it takes `gauss_newton.descended`.
     """
     now = model.linearised(start[None])
-    before = np.inf
+    before = 0.0
     for _ in range(_ITERATIONS):
         if not now.is_in_front[0]:
             return None
@@ -28,9 +28,9 @@ def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
             return None
         now = after
         # The promise shrinks at least as fast again as it did.
-        if promised * min(1.0, promised / before) < _TOLERANCE:
+        if promised * (promised / before if promised < before else 1.0) < _TOLERANCE:
             return now
-        before = max(promised, 1e-300)
+        before = promised
     return None
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from tapreach.geometry.finite import FloatArray
 
-UP_TO = 0.3
+UP_TO = 0.25
 """sd(1/Z)·Z up to which it is used."""
 _REACH = 4.0
 _SIGMAS = np.linspace(-_REACH, _REACH, 161)
@@ -20,7 +20,7 @@ _OPEN = 1.96  # sigmas, as in `range_posterior`
 
 @dataclass(frozen=True)
 class NearNormalPosterior:
-    """inverse_depth, sd [1/m], sd at most 0.3 of it; slant: range over Z; nearest, farthest [m]: the prior.
+    """inverse_depth, sd [1/m], sd at most 0.25 of it; slant: range over Z; nearest, farthest [m]: the prior.
 
     An answer beyond the prior by more than 4 sigma stands against it, and the prior is dropped.
     """
@@ -56,7 +56,7 @@ class NearNormalPosterior:
         least, most = self.slant / self.farthest, self.slant / self.nearest
         if not least < inverse_depths[-1] or not most > inverse_depths[0]:
             return _NORMAL
-        densities = _NORMAL / np.maximum(inverse_depths, 0.1 * self.inverse_depth)
+        densities = _NORMAL / np.maximum(inverse_depths, 0.01 * self.inverse_depth)
         if least > inverse_depths[0] or most < inverse_depths[-1]:
             densities = np.where((inverse_depths >= least) & (inverse_depths <= most), densities, 0.0)
         return np.asarray(densities if densities.any() else _NORMAL)
