@@ -10,16 +10,19 @@ from tapreach.geometry.pixel import ImageSize, Pixel
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.background_watch import BackgroundWatch
-from tapreach.tasks.guessing import DISTANCES, guesses_for
+from tapreach.tasks.distance_range import DistanceRange
+from tapreach.tasks.guessing import guesses_for
 from tapreach.tasks.sighting import TAP_SIGMA, SeenWay, Sighting, is_apart, ray_of
 from tapreach.vision.image_io import Gray
-from tapreach.vision.track import Track, TrackStatus
+from tapreach.vision.track import Guess, Track, TrackStatus
 from tapreach.vision.tracker import PatchTracker
 
 UNSURE_FACTOR = 2.0
 """An unsure pixel counts with this many times its sigma."""
 _WAY_DISTANCE, _WAY_ANGLE = 0.03, radians(3.0)
 """While the robot moves its way is measured this often."""
+_ABOUT = 1.0, 0.85, 1.18
+"""A known distance may be so much wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +71,7 @@ class TargetWatch:
             shot.frame_id, shot.captured_ns, place, sigma, 1.0, shot.world_from_base, is_key=True
         )
         """The newest sighting."""
+        self._distances = DistanceRange(self.last, description)
 
     @property
     def weakness(self) -> str:
@@ -80,9 +84,7 @@ class TargetWatch:
         point_in_world: (3,) where the target is, as far as known. is_stop: measure the way, and take this
         frame as the next key. Raises InputError for a picture of another size.
         """
-        distances = DISTANCES if point_in_world is None else (self._distance_to(point_in_world),)
-        guesses = guesses_for(self.last, shot.world_from_base, self._description, distances)
-        track = self._tracker.follow(picture, guesses)
+        track = self._tracker.follow(picture, self._guesses(shot, point_in_world))
         if self._background is not None:
             self._background.follow(picture)
         loss = track.reason if track.status is TrackStatus.LOST else ""
@@ -92,8 +94,17 @@ class TargetWatch:
         seen = Sighting(
             shot.frame_id, shot.captured_ns, track.pixel, sigma, track.scale, shot.world_from_base
         )
+        self._distances.note(seen)
         self.last = self._with_way(seen, picture, is_stop)
         return Followed(self.last, loss)
+
+    def _guesses(self, shot: Shot, point_in_world: FloatArray | None) -> tuple[Guess, ...]:
+        """Return where it may be: by its point as far as known, else by what its way leaves possible."""
+        if point_in_world is None:
+            return self._distances.guesses(self.last, shot.world_from_base)
+        distance = self._distance_to(point_in_world)
+        supposed = [distance * factor for factor in _ABOUT]
+        return guesses_for(self.last, shot.world_from_base, self._description, supposed)
 
     def _distance_to(self, point_in_world: FloatArray) -> float:
         return float(np.linalg.norm(point_in_world - ray_of(self.last, self._description).origin))

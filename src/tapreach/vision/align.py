@@ -6,13 +6,15 @@ weak. Source: Baker and Matthews, "Lucas-Kanade 20 years on", IJCV 2004, parts 1
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
+import numpy.typing as npt
 
 from tapreach.geometry.finite import FloatArray
 from tapreach.vision.image_io import Gray
-from tapreach.vision.patch import Patch
+from tapreach.vision.patch import GRADIENT_NOISE, Patch
 from tapreach.vision.region import Region, region_around
 from tapreach.vision.warp import Warp, chained, inverted, is_seen, patch_grid, scale_of, warp_at
 
@@ -24,6 +26,8 @@ _LEAST_SEEN = 0.2
 """Share of a patch's weight that must be on the picture."""
 _LEAST_NOISE = 2.0
 """Grey levels; a JPEG is never quieter."""
+_LEAST_KNOWN = 0.003
+"""Information of a direction without texture [1/px²]."""
 _NEIGHBOURS = 3.0
 """Residuals of neighbouring pixels are alike: about so many count as one measurement."""
 
@@ -34,12 +38,16 @@ class Alignment:
 
     covariance: (2, 2) [px²] of the patch's centre in the picture, by noise alone.
     score: weighted correlation with the patch, -1 to 1. support: share of the patch that agrees, 0 to 1.
+    agreement: (n²,) of each sample, 0 to 1. slackness: (2, 2) how much less texture holds the patch in each
+    direction than in its best one: 1 across the best, large along an edge.
     """
 
     warp: Warp
     covariance: FloatArray
     score: float
     support: float
+    agreement: FloatArray
+    slackness: FloatArray
 
 
 @dataclass(eq=False)
@@ -52,16 +60,22 @@ class _Fit:
     deviation: FloatArray
     information: FloatArray
     robust: FloatArray
+    noise: float = 1.0
 
 
-def align(patch: Patch, picture: Gray, start: Warp, search: int = 0) -> Alignment | None:
+def align(
+    patch: Patch, picture: Gray, start: Warp, search: int = 0, layer: FloatArray | None = None
+) -> Alignment | None:
     """Return where `patch` lies near `start`; None when it runs off or there is nothing to hold on to.
 
-    With `search` all shifts up to that many patch pixels are compared first, which widens the basin.
+    layer: (n²,) trust in each sample, 0 to 1, all 1 when left out. With `search` all shifts up to that many
+    patch pixels are compared first, which widens the basin.
     """
     weights = patch.weights * is_seen(start, patch.half, picture.shape)
     if weights.sum() <= _LEAST_SEEN * (weights.size / 4.0) or weights.sum() < 0.5 * patch.weights.sum():
         return None
+    if layer is not None:
+        weights = weights * layer
     region = region_around(picture, start, patch.half + search)
     warp = _best_shift(patch, region, start, search) if search else start
     fit = _refine(patch, region, warp, weights)
@@ -96,6 +110,7 @@ def _refine(patch: Patch, region: Region, start: Warp, weights: FloatArray) -> _
 def _step(fit: _Fit, jacobian: FloatArray, residual: FloatArray, weights: FloatArray) -> float | None:
     """Make one Gauss-Newton step in place; return its shift [patch px], None when it leads nowhere."""
     noise, fit.robust = _tukey(residual, weights)
+    fit.noise = noise
     scaled = jacobian * ([fit.gain] * 6 + [1.0, 1.0])
     weighted = scaled * (fit.robust / noise**2)[:, None]
     fit.information = weighted.T @ scaled + _PRIOR
@@ -142,13 +157,30 @@ def _tukey(residual: FloatArray, weights: FloatArray) -> tuple[float, FloatArray
 def _judged(patch: Patch, region: Region, fit: _Fit, weights: FloatArray) -> Alignment:
     template = patch.values.ravel().astype(np.float64)
     seen = region.sample(fit.warp, patch.half).ravel().astype(np.float64)
-    in_patch = np.linalg.inv(fit.information)[4:6, 4:6] * _NEIGHBOURS
+    in_patch = _covariance_of_shift(fit) * _NEIGHBOURS
     linear = fit.warp[:, :2]
+    values, axes = np.linalg.eigh(in_patch)
+    turned = linear / scale_of(fit.warp) @ axes
+    slackness = turned * (values / values[0]) @ turned.T
     support = float(fit.robust.sum() / patch.weights.sum())
-    return Alignment(fit.warp, linear @ in_patch @ linear.T, _correlation(seen, template, weights), support)
+    score = correlation(seen, template, weights)
+    agreement = np.where(weights > 0.0, fit.robust / np.maximum(weights, 1e-12), 1.0)
+    return Alignment(fit.warp, linear @ in_patch @ linear.T, score, support, agreement, slackness)
 
 
-def _correlation(seen: FloatArray, template: FloatArray, weights: FloatArray) -> float:
+def _covariance_of_shift(fit: _Fit) -> FloatArray:
+    """Return (2, 2) [patch px²]; what gradients of noise alone would tell is taken off, so that the way
+    along an edge is known to be unknown.
+    """
+    known = np.linalg.inv(np.linalg.inv(fit.information)[4:6, 4:6])
+    values, axes = np.linalg.eigh(known)
+    by_noise = fit.gain**2 * GRADIENT_NOISE**2 * float(fit.robust.sum()) / fit.noise**2
+    kept = np.maximum(values - by_noise, _LEAST_KNOWN)
+    return np.asarray((axes / kept) @ axes.T)
+
+
+def correlation(seen: npt.NDArray[Any], template: npt.NDArray[Any], weights: FloatArray) -> float:
+    """Return the weighted correlation of two rows of grey values (n,), -1 to 1; 0 for one colour."""
     total = weights.sum()
     a, b = seen - weights @ seen / total, template - weights @ template / total
     spread = float(np.sqrt((weights @ a**2) * (weights @ b**2)))

@@ -9,14 +9,21 @@ import numpy as np
 from tapreach.geometry.finite import FloatArray
 from tapreach.vision.image_io import Gray
 from tapreach.vision.region import Values, region_around
-from tapreach.vision.warp import Warp, is_seen, patch_grid, warp_at
+from tapreach.vision.warp import Warp, is_seen, patch_grid, scale_of, warp_at
 
-HALF_SIZES = (11, 15, 20)
+SIZES = ((8, 1.0), (11, 1.0), (15, 1.0), (20, 1.0), (16, 2.0), (20, 2.0))
+"""Half sizes in samples, and picture pixels from sample to sample: what has little texture itself is known by
+what is around it.
+"""
+GRADIENT_NOISE = 1.0
+"""Grey levels per sample: slopes that JPEG and grain put where there are none."""
 NOISE = 3.0
 """Grey levels of camera noise assumed before any is measured."""
-GOOD_SIGMA = 0.12
+SHAPE = 0.1
+"""Samples by which edges move when a thing turns: along an edge that is multiplied."""
+GOOD_SIGMA = 0.35
 """A patch that can be placed this well [px] is large enough: a larger one only sees more background."""
-POOR_SIGMA = 0.35
+POOR_SIGMA = 1.2
 POOR_CONTRAST = 4.0
 
 
@@ -53,9 +60,17 @@ class Patch:
 
     @property
     def expected_sigma(self) -> float:
-        """How well it can be placed in its worse direction under NOISE [px]; may be infinite."""
-        least = float(np.linalg.eigvalsh(self.structure)[0])
-        return NOISE / math.sqrt(least) if least > 0.0 else math.inf
+        """How well it can be placed in its worse direction [picture px]; may be infinite."""
+        by_noise = GRADIENT_NOISE**2 * float(self.weights.sum())
+        least, most = np.linalg.eigvalsh(self.structure) - by_noise
+        if least <= 0.0:
+            return math.inf
+        return self.step * math.sqrt(NOISE**2 / least + SHAPE**2 * most / least)
+
+    @property
+    def step(self) -> float:
+        """Picture pixels from sample to sample."""
+        return scale_of(self.picture_from_patch)
 
     @property
     def weakness(self) -> str:
@@ -68,13 +83,15 @@ class Patch:
 
 
 def cut_patch(picture: Gray, u: float, v: float) -> Patch:
-    """Return the smallest patch around (u, v) that has texture enough, or the largest there is."""
-    patch = patch_of_half(picture, warp_at(u, v), HALF_SIZES[0])
-    for half in HALF_SIZES[1:]:
-        if patch.expected_sigma <= GOOD_SIGMA:
+    """Return the smallest patch around (u, v) that has texture enough, or the one with most."""
+    patches = (patch_of_half(picture, warp_at(u, v, step), half) for half, step in SIZES)
+    best = next(patches)
+    for patch in patches:
+        if best.expected_sigma <= GOOD_SIGMA:
             break
-        patch = patch_of_half(picture, warp_at(u, v), half)
-    return patch
+        if patch.expected_sigma < best.expected_sigma or math.isinf(best.expected_sigma):
+            best = patch
+    return best
 
 
 def patch_of_half(picture: Gray, picture_from_patch: Warp, half: int) -> Patch:

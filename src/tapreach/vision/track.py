@@ -1,5 +1,6 @@
 """What the tracker says about one picture, and what its caller may tell it beforehand."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -19,12 +20,14 @@ class Guess:
     """Where the place may be in the next picture [px], and how much larger than in the tapped frame.
 
     The caller knows the robot's motion and makes guesses from it: one for each supposed distance lays them
-    along the epipolar line.
+    along the epipolar line. sigma: how well the motion is known, one standard deviation across the line
+    [px]; what looks alike but lies beside the line is refused. Infinite: anywhere.
     """
 
     u: float
     v: float
     scale: float = 1.0
+    sigma: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
