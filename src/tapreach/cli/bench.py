@@ -1,4 +1,4 @@
-"""`tapreach bench`: measure video, control and accuracy, and write the page that shows the last full runs."""
+"""`tapreach bench`: measure, and write the page that shows the last full runs."""
 
 import asyncio
 import secrets
@@ -12,7 +12,8 @@ from rich.console import Console
 from tapreach.bench import accuracy as accuracy_bench
 from tapreach.bench import control as control_bench
 from tapreach.bench import locate as locate_bench
-from tapreach.bench import locate_plan
+from tapreach.bench import locate_plan, tracking_plan
+from tapreach.bench import tracking as tracking_bench
 from tapreach.bench import video as video_bench
 from tapreach.bench.accuracy_plan import AccuracyPlan, Chapter, smoke_plan
 from tapreach.bench.document import benchmarks_document
@@ -100,6 +101,26 @@ def locate(
         plan = locate_plan.smoke_plan(used)
     Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: locate_bench.run_locate(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def tracking(
+    smoke: Smoke = False,
+    taps: Annotated[int, typer.Option(min=1, help="tapped points of each film")] = 12,
+    random_scenes: Annotated[int, typer.Option(min=0, help="beside those that ship")] = 7,
+    jobs: Annotated[int, typer.Option(min=1, help="processes that draw")] = 1,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Tapped points followed through rendered films, against the truth and OpenCV. About 10 minutes."""
+    used = secrets.randbits(32) if seed is None else seed
+    plan = tracking_plan.full_plan(used, random_scenes, taps, jobs)
+    if smoke:
+        plan = tracking_plan.smoke_plan(used)
+    Console().print(f"seed {used}", highlight=False)
+    _run(lambda on_section: tracking_bench.run_tracking(plan, on_section, MonotonicClock()), json)
 
 
 @bench.command()

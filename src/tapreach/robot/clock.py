@@ -11,6 +11,11 @@ MS = 1_000_000
 SECOND = 1_000_000_000
 
 
+def processor_ns() -> int:
+    """Return the processor time that this thread has used [ns]: waiting for a busy machine does not count."""
+    return time.thread_time_ns()
+
+
 class Clock(Protocol):
     """Monotonic time in integer nanoseconds, and a way to wait for it."""
 
