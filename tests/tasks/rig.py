@@ -8,7 +8,6 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,7 +20,6 @@ from tapreach.control.loop_pilot import LoopPilot
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.inline import InlineSimRobot
 from tapreach.drivers.sim.scene import Scene
-from tapreach.drivers.sim.truth import ask_truth
 from tapreach.errors import LinkLost
 from tapreach.estimation.pose_history import PoseHistory
 from tapreach.robot.clock import MS, SECOND, ManualClock
@@ -183,19 +181,6 @@ async def tapped_surface(
     robot: InlineSimRobot, captured_ns: int, u: float, v: float
 ) -> tuple[str, NDArray[np.float64]] | None:
     """What truly lies under a pixel: the object's name ('' for the room) and the point in the world (3,)."""
-    truth = await ask_truth(robot, captured_ns)
-    camera = robot.description.camera.model()
-    (direction,) = camera.unproject([[u, v]])
-    pose = truth.camera_pose
-    ray = np.asarray(pose.rotation.apply(direction))
-    world = robot._world
-    assert world is not None
-    geom = np.zeros(1, np.int32)
-    distance = mujoco.mj_ray(
-        world.model, world.data, np.asarray(pose.translation), ray, None, 1, world.model.body("base").id, geom
-    )
-    if distance < 0.0:
-        return None
-    body = world.model.body(int(world.model.geom_bodyid[geom[0]])).name
-    name = body if body in {thing.name for thing in truth.objects} else ""
-    return name, np.asarray(pose.translation) + distance * ray
+    direction = robot.description.camera.model().unproject([[u, v]])
+    (surface,) = robot.surfaces_seen(direction, captured_ns)
+    return None if surface is None else (surface.name, surface.point_in_world)
