@@ -69,6 +69,21 @@ def test_tapped_object_is_located_within_its_region(name: str) -> None:
     in_scene("room", test)
 
 
+def test_no_more_is_driven_than_the_wanted_accuracy_asks_for() -> None:
+    async def test(rig: Rig) -> None:
+        tap, _ = await tap_on(rig, "red can")
+        rig.runner.start(LocateTask(tap, 1, accuracy=0.2), OPERATOR)
+        progress = await rig.finish()
+        assert "20 % was wanted" in progress.message
+        (planned,) = [move for move in rig.moves if move is not None]
+        assert rig.loop.senses.odometry is not None
+        assert rig.loop.senses.odometry.distance < 0.12
+        assert planned.expected_relative_sd <= 0.2
+        assert rig.loop.sent.twist.is_zero
+
+    in_scene("room", test)
+
+
 def test_cancel_on_the_way_stops_at_once_and_ends_the_task() -> None:
     async def test(rig: Rig) -> None:
         tap, _ = await tap_on(rig, "red can")

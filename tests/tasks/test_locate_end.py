@@ -97,7 +97,7 @@ def test_further_moves_must_promise_and_keep() -> None:
         (End.REACHED, ", 3 % was wanted"),
         (
             End.NO_GAIN,
-            "; the 0.30 m that it may still drive would not help much",
+            "; the 0.30 m left to drive would not help much",
         ),
         (End.WAY_USED_UP, "; the way it may drive is used up"),
         (End.NO_MOVE, "; no further move keeps it in the picture"),

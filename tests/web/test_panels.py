@@ -101,6 +101,20 @@ def test_the_plan_is_drawn(server, open_page):
       return d.some((value, index) => index % 4 === 3 && value === 255); }""")
 
 
+def test_card_turns_over_to_the_plan_where_there_is_room_for_one_side(server, open_page):
+    page = open_page(size=(844, 390), scale=2)
+    server.push(TARGET)
+    page.click("#card-flip")
+    page.wait_for_function(f"({GREEN})('plan') === 0")
+    server.push(MOVE)
+    page.wait_for_function(f"({GREEN})('plan') > 100")
+    height = page.locator("#plan").bounding_box()["height"]
+    assert 60 < height < 200
+    server.push(NO_MOVE)
+    page.wait_for_function(f"({GREEN})('plan') === 0")
+    assert page.locator("#plan").bounding_box()["height"] == height
+
+
 def test_a_task_shows_phase_and_progress_and_can_be_cancelled(server, open_page):
     page = open_page()
     task = {"type": "task", "task_id": 1, "kind": "locate", "state": "running", "phase": "turning_left"}

@@ -44,6 +44,7 @@ export class Plan {
     const { canvas } = this;
     this.width = canvas.clientWidth;
     this.height = canvas.clientHeight;
+    if (this.width === 0) return; // hidden: a size of 0 would stay
     canvas.width = Math.round(this.width * devicePixelRatio);
     canvas.height = Math.round(this.height * devicePixelRatio);
     this.ctx.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);

@@ -50,12 +50,12 @@ def advice_to_halve(
     distance = float(np.linalg.norm(point_in_world - observations[0].world_from_camera.translation))
     halving = _shortest_that_halves(sds, relative_sd)
     best = int(np.argmin(sds)) if halving is None else halving
-    gain = f"{_error(sds[best], distance)} instead of {_error(relative_sd, distance)}"
+    error = _error(sds[best], distance)
     if halving is not None:
-        return f"{_in_words(steps[best])} more to halve the error: {gain}"
+        return f"{_in_words(steps[best])} more to halve the error: {error}"
     if sds[best] > _HELPFUL * relative_sd:
-        return f"more views from here will hardly help ({gain} at best); look from another side"
-    return f"{_in_words(steps[best])} more: {gain}"
+        return f"more views from here bring {error} at best; look from another side"
+    return f"{_in_words(steps[best])} more for {error}"
 
 
 def _shortest_that_halves(sds: FloatArray, relative_sd: float) -> int | None:

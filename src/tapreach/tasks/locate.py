@@ -26,7 +26,7 @@ from tapreach.tasks.task import Tap, TaskContext, TaskReport
 
 ACCURACY = 0.01
 """Relative error of the range, one sigma, that is wanted unless said otherwise."""
-MOST_MOVES = 4
+MOST_MOVES = 5
 MOST_DRIVEN, LONGEST_ADVANCE = 0.8, 0.5
 """Way [m] that locating may drive in all, and in one move."""
 LOOK_FRAMES = 3
@@ -78,6 +78,8 @@ class _Locating:
         self._renewed_ns = 0
         self._seen_ns = 0
         self._enough = asyncio.Event()
+        self._cut_short = ""
+        """Why the newest move was ended before it was done; '' when it was not."""
 
     async def run(self) -> str:
         self._say("look", 0.0, "looking at the tapped place")
@@ -104,7 +106,7 @@ class _Locating:
                 return End.LOST
             if is_accurate(self._estimate, self._accuracy):
                 return End.REACHED
-            if not has_helped(before, self._estimate):
+            if not self._cut_short and not has_helped(before, self._estimate):
                 return End.NO_GAIN
             if self._way_left < SHORTEST_ADVANCE:
                 break
@@ -116,6 +118,7 @@ class _Locating:
         watch = self._watch_over(planned)
         self._context.show_move(planned)
         self._enough.clear()
+        self._cut_short = ""
         self._seen_ns = self._context.clock.now_ns()
         try:
             await self._follower.during(
@@ -148,7 +151,9 @@ class _Locating:
             self._seen_ns = now_ns
         if now_ns - self._renewed_ns >= _RENEW_EVERY_NS:
             await self._renew(with_advice=False)
-        if watch.reason_to_stop(self._follower.sightings, self._estimate, now_ns - self._seen_ns):
+        reason = watch.reason_to_stop(self._follower.sightings, self._estimate, now_ns - self._seen_ns)
+        if reason:
+            self._cut_short = reason
             self._enough.set()
 
     def _watch_over(self, planned: PlannedMove) -> MoveWatch:

@@ -55,7 +55,7 @@ def closing_reason(relative_sd: float, end: End, wanted: float, way_left: float,
     if end is End.LOST:
         return f"{known}; lost on the way ({loss}), from the views before"
     why = {
-        End.NO_GAIN: f"the {way_left:.2f} m that it may still drive would not help much",
+        End.NO_GAIN: f"the {way_left:.2f} m left to drive would not help much",
         End.WAY_USED_UP: "the way it may drive is used up",
         End.NO_MOVE: "no further move keeps it in the picture",
     }[end]
