@@ -48,4 +48,4 @@ def _step(now: Linearised) -> tuple[FloatArray, float]:
         return np.zeros(now.x.shape[1]), np.inf
     weighted = solved[:, 3] + solved[:, :3] @ on_target
     step = np.concatenate([on_target, -(weighted @ by_errors) - normals])
-    return step, float(now.costs[0] - expected @ weighted)
+    return step, max(float(now.costs[0] - expected @ weighted), 0.0)  # below zero it is rounding
