@@ -16,7 +16,7 @@ from tapreach.geometry.pose import skew
 _PLANAR_ROWS = [0, 1, 5]
 _ROCKING = 0.002
 """Pitch and roll of a chassis on its wheels, one sigma of the difference between two stops [rad]."""
-SLIPPING = (0.1, 0.1, 0.2)
+SLIPPING = (0.1, 0.03, 0.2)
 """One sigma of x, y [m] and heading [rad] when the wheels may have slipped."""
 
 

@@ -46,7 +46,8 @@ def straightened(sightings: Sequence[Sighting], description: RobotDescription) -
     )
     by_wheels = float(np.linalg.norm(pose_errors(poses, known[0])[-1, 2]))
     left = float(np.linalg.norm(corrected.errors.by_base[-1, 5]))
-    helps = bool(steps) and left <= _HELPS * by_wheels
+    has_slipped = any(step.knowledge.has_slipped for step in steps)
+    helps = has_slipped or (bool(steps) and left <= _HELPS * by_wheels)
     reason = "" if helps else _why_not(sightings)
     return Straightened(straight, corrected.base_from_camera, corrected.errors, reason)
 

@@ -10,9 +10,9 @@ from tapreach.estimation.point_estimate import PointEstimate
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.ray import Ray
 from tapreach.robot.config import RobotDescription
-from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.estimating import HeadingSource, LocatedPoint
 from tapreach.tasks.extent import extent_of
-from tapreach.tasks.sighting import Sighting, ray_of
+from tapreach.tasks.sighting import Sighting, rays_of
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.task import Tap
 
@@ -38,12 +38,12 @@ class TargetReport:
         if isinstance(estimate, LocatedPoint):
             sightings = estimate.sightings
         point = estimate.point_in_world if estimate is not None else None
-        rays = tuple(ray_of(sighting, self.description) for sighting in sightings)
+        rays = rays_of(sightings, self.description)
         return Target(
             target_id=self.target_id,
             source=self.source,
             status=str(estimate.status) if estimate is not None else "following",
-            reason=reason or (estimate.reason if estimate is not None else ""),
+            reason=_reason(reason, estimate),
             advice=estimate.advice if estimate is not None else "",
             frame_id=self.tap.frame_id,
             u=self.tap.u,
@@ -56,6 +56,16 @@ class TargetReport:
             is_following=is_following,
             extent=extent_of(self.tap.box, sightings[0], estimate, self.description),
         )
+
+
+def _reason(given: str, estimate: PointEstimate | None) -> str:
+    """Return what is said of the answer; and, where the wheels alone tell how the robot turned, why."""
+    reason = given or (estimate.reason if estimate is not None else "")
+    if not isinstance(estimate, LocatedPoint) or estimate.point_in_world is None:
+        return reason
+    if estimate.heading_from is HeadingSource.BACKGROUND:
+        return reason
+    return "; ".join(filter(None, [reason, f"turns by the wheels alone ({estimate.heading_reason})"]))
 
 
 def floor_distance(world_from_base: PlanarPose, point_in_world: np.ndarray) -> float:
