@@ -56,6 +56,24 @@ def test_floor_tap_shows_a_target_and_marks_it_in_the_next_picture(play):
     play(scenario)
 
 
+def test_locating_shows_its_move_with_what_it_should_bring_until_it_ends(play):
+    async def scenario(here):
+        page = await here.driver()
+        refused = await tapped(here, page, "locate", accuracy=0.0)
+        assert not refused["ok"] and "accuracy" in refused["reason"]
+        assert (await tapped(here, page, "locate", accuracy=0.05))["ok"]
+        await page.until(lambda: page.news.get("move", {}).get("tracks_in_world"))
+        move = page.news["move"]
+        assert 0.0 < move["expected_relative_sd"] < 0.3 and move["expected_sd"] > 0.0
+        assert "driving" in move["words"]
+        assert len(here.station.planned_path.lines_in_world) == 3
+        await page.ask("task_cancel")
+        await page.until(lambda: page.news["move"]["tracks_in_world"] == [])
+        assert here.station.planned_path.lines_in_world == []
+
+    play(scenario)
+
+
 def test_box_on_the_floor_shows_its_size_and_marks_its_corners(play):
     async def scenario(here):
         page = await here.driver()
