@@ -13,9 +13,9 @@ from tapreach.vision.region import region_around
 from tapreach.vision.warp import Warp, chained, inverted, is_seen, scale_of, warp_at
 
 _SEARCH = 4
-_LEAST_SIGMA = 0.15
+_LEAST_SIGMA = 0.12
 """What a place that is round or turns away looks different by, across its best texture [samples]."""
-_SIGMA_PER_LOG_SCALE = 1.2
+_SIGMA_PER_LOG_SCALE = 0.8
 """A place seen from nearer or farther looks different: so much is added per factor e [px of the tapped
 frame].
 """

@@ -21,6 +21,8 @@ _MOST_REACH = 60
 _LEAST_GUESS_REACH = 8
 _RIVAL_REACH, _RIVAL_SCORE = 70, 0.6
 """How far around the tapped place look-alikes are sought [samples], and how alike they are."""
+_MOST_PLACES = 5
+"""So many places are searched in one picture at most, the likeliest first: it must not take long."""
 _MOST_LOG_SCALE = 1.2
 """A place is not sought at a size farther than this from where it was last seen."""
 _SCALES = (1.0, 0.87, 1.15)
@@ -87,7 +89,7 @@ def _places(
             and -reach < guess.v < height + reach
             and abs(math.log(guess.scale / scale_of(last))) < _MOST_LOG_SCALE
         ]
-        return [(_placed(last, *place), reach) for place in _thinned(near, 0.7 * reach)]
+        return [(_placed(last, *place), reach) for place in _thinned(near, 0.7 * reach)[:_MOST_PLACES]]
     reach = min(_MOST_REACH, _FIRST_REACH + 4 * lost_for)
     u, v, scale = float(last[0, 2]), float(last[1, 2]), scale_of(last)
     return [(_placed(last, u, v, scale * factor), reach) for factor in _SCALES]

@@ -30,14 +30,14 @@ _LEAST_SUPPORT = 0.35
 _APART_FROM_SURROUNDINGS = 2.5
 """A place that moves this far apart from its surroundings is doubted [px of the tapped frame]."""
 _NEW_LOOK_SCALE = 1.25
-_TAPPED_IS_BETTER = 1.3
+_TAPPED_IS_BETTER = 8.0
 """The tapped look is preferred to a later one that is nearer in scale by less than this factor."""
 _FOUND_SCORE, _LEAST_CONTEXT = 0.85, 0.4
 """A place found again must look so much like the patch, and its wider surroundings so much like theirs."""
 _SHORT = 70.0
 """A band so short [px] leaves little else to mistake the place for."""
 _MOST_LOOKS = 10
-_UNSURE_SIGMA, _MOST_SIGMA = 2.0, 4.5
+_UNSURE_SIGMA, _MOST_SIGMA = 2.0, 8.0
 """A place known worse than this is doubted, or lost [px of the tapped frame]."""
 _POINTS_WANTED = 14
 
