@@ -1,5 +1,6 @@
 """The paper's own procedure on the same tap: 12 degrees, 20 cm, and its formula; beside it our estimator."""
 
+import math
 from dataclasses import dataclass
 from math import radians
 
@@ -7,7 +8,7 @@ from tapreach.estimation.two_tap import two_tap_from_pixels
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import estimate
-from tapreach.tasks.follower import Follower, TargetLost
+from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.task import Tap, TaskContext
 
@@ -19,7 +20,8 @@ class FixedMove:
     """A task: turn by 12 degrees and drive 20 cm; the tapped place is followed, which stands for the second
     tap. Left as in the paper; right where a turn to the left would take it out of the picture.
 
-    sightings: the tapped frame and the last stop.
+    sightings: the tapped frame and the last stop. The estimate rests on these, and on the frames from which
+    the background was seen.
     """
 
     tap: Tap
@@ -42,7 +44,8 @@ class FixedMove:
             if last is None:
                 raise TargetLost(f"lost the tapped place: {follower.loss}")
             self.sightings = [first, last]
-            await context.compute.call(estimate, self.sightings, context.description, False)
+            views = thinned(self.sightings, follower.sightings, math.inf, math.inf)
+            await context.compute.call(estimate, views, context.description, False)
         finally:
             await follower.close()
         return "done"

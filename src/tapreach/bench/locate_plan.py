@@ -50,7 +50,7 @@ class LocatePlan:
 
 def smoke_plan(seed: int) -> LocatePlan:
     """A plan that only shows that everything works."""
-    return LocatePlan(seed, SMOKE_TAPS, rate_hz=SMOKE_RATE_HZ, is_smoke=True)
+    return LocatePlan(seed, SMOKE_TAPS, (Arm.CHOSEN, Arm.FIXED), rate_hz=SMOKE_RATE_HZ, is_smoke=True)
 
 
 def generator(seed: int, tap: int) -> np.random.Generator:
