@@ -1,4 +1,4 @@
-"""Motions made of others: one after the other, or the arm beside the wheels; and coming to rest."""
+"""Motions made of others: one after the other, the arm before the wheels; and coming to rest."""
 
 from collections.abc import Sequence
 
@@ -62,8 +62,8 @@ class InTurn:
         return twist
 
 
-class WithArm:
-    """Wheels and arm at the same time; ends when both have, or when one is given up."""
+class ArmFirst:
+    """The wheels, as soon as the arm has come to rest: on its way it may pass before the camera."""
 
     moves_arm = True
 
@@ -86,5 +86,5 @@ class WithArm:
     def step(self, senses: Senses, now_ns: int) -> Twist:
         """See Motion."""
         if self._arm.progress is Progress.MOVING:
-            self._arm.step(senses, now_ns)
-        return self._wheels.step(senses, now_ns) if self._wheels.progress is Progress.MOVING else STILL
+            return self._arm.step(senses, now_ns)
+        return self._wheels.step(senses, now_ns)

@@ -1,7 +1,7 @@
 """The Pilot that tasks are given: motions handed to the control loop."""
 
 from tapreach.control.arm_move import ArmMove
-from tapreach.control.joined_motion import InTurn, Rest, WithArm
+from tapreach.control.joined_motion import ArmFirst, InTurn, Rest
 from tapreach.control.loop import ControlLoop
 from tapreach.control.motion import Motion
 from tapreach.control.relative_move import ABOUT, ABOUT_TURN, Advance, Turn
@@ -34,9 +34,13 @@ class LoopPilot:
         if abs(step.turn) > ABOUT_TURN:
             wheels.insert(0, Turn(step.turn, base, is_exact=False))
         motion: Motion = InTurn(wheels)
-        if arm is not None:
-            motion = WithArm(motion, ArmMove(self._loop.move_arm, arm))
+        if arm is not None and not self._is_at(arm):
+            motion = ArmFirst(motion, ArmMove(self._loop.move_arm, arm))
         return await self._loop.carry_out(motion)
+
+    def _is_at(self, pose: ArmPose) -> bool:
+        state = self._loop.senses.arm
+        return state is not None and not state.is_moving and self._loop.arm_target == pose
 
     async def move_arm(self, target: ArmPose) -> None:
         """See Pilot."""

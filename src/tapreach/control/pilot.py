@@ -26,9 +26,9 @@ class Pilot(Protocol):
         ...
 
     async def move(self, step: PlanarStep, arm: ArmPose | None = None) -> Odometry:
-        """Turn and then drive without standing in between, to about there, the arm going to `arm` meanwhile.
+        """Turn and then drive without standing in between, to about there, once the arm is at `arm`.
 
-        Quicker than turn, advance and move_arm after each other. Returns the odometry once at rest.
+        Quicker than move_arm, turn and advance after each other. Returns the odometry once at rest.
         """
         ...
 

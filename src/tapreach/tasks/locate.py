@@ -113,7 +113,7 @@ class _Locating:
         return End.WAY_USED_UP
 
     async def _make(self, planned: PlannedMove) -> None:
-        """Make the move as far as it has a purpose, the arm going out of the picture meanwhile; look."""
+        """Make the move as far as it has a purpose, once the arm is out of the picture; look."""
         arm = self._context.description.arm.standard.pose()
         watch = self._watch_over(planned)
         self._context.show_move(planned)
