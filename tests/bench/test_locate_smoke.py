@@ -1,4 +1,7 @@
-"""One tap of the bench of locating, in two of its arms, with a fixed seed. Figures are judged by full runs only."""
+"""One tap of the bench of locating, in two of its arms, with a fixed seed.
+
+Figures are judged by full runs only.
+"""
 
 import asyncio
 

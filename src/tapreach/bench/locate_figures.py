@@ -37,9 +37,9 @@ def beside_section(outcomes: Sequence[Outcome]) -> Section:
     return Section(
         "Beside the paper's fixed move",
         "The same taps. Fixed move: the arm is brought to its pose, 12° and 20 cm as in the paper; our "
-        "estimator with the background. Paper's formula: its closed form (eq. 7) on the same two pixels, with "
-        "turn and advance as the wheels say them; it takes the camera for level and on the axis, and has no "
-        "region.",
+        "estimator with the background. Paper's formula: its closed form (eq. 7) on the same two pixels, "
+        "with turn and advance as the wheels say them; it takes the camera for level and on the axis, and "
+        "has no region.",
         (),
         Grid(("what is done", *COLUMNS), rows),
     )

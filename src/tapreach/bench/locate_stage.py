@@ -1,16 +1,17 @@
 """Where the robot stands and what is tapped: a random thing, distance and side, and a random place on it.
 
 A thing of the scene is drawn, a distance of 0.5 to 3 m, the side it is seen from and where across the picture
-it stands; the robot must fit there, with 0.35 m of free floor ahead of it. Then pixels are drawn evenly from
-the box around the thing in the picture until one lies on the thing with its 8 neighbours 4 px away. What is
-hidden, or too small for that, is drawn anew (the distance only after 40 tries, so that far ones are as
-frequent as near ones where the room allows it). Nothing else is asked of the place.
+it stands; the robot must fit there, with 0.35 m of free floor ahead of it, and when turned by 25 degrees to
+either side, since locating knows of no obstacles. Then pixels are drawn evenly from the box around the thing
+in the picture until one lies on the thing with its 8 neighbours 4 px away. What is hidden, or too small for
+that, is drawn anew (the distance only after 40 tries, so that far ones are as frequent as near ones where the
+room allows it). Nothing else is asked of the place.
 """
 
 import itertools
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -34,6 +35,7 @@ INSIDE_PX = 4.0
 SETTLED_S = 0.4
 _DISTANCES, _PLACES, _PIXELS = 20, 40, 30
 _AHEAD = 0.35
+_SIDES = (math.radians(-25.0), 0.0, math.radians(25.0))
 _ROBOT = np.array([[-0.18, -0.13], [0.22 + _AHEAD, -0.13], [0.22 + _AHEAD, 0.13], [-0.18, 0.13]])
 _AROUND = INSIDE_PX * np.array([(du, dv) for du in (-1, 0, 1) for dv in (-1, 0, 1)])
 _HALF_VIEW_DEG = 26.0
@@ -130,6 +132,11 @@ def _facing(
 
 
 def _is_clear(start: PlanarPose, scene: Scene, solids: list[Solid]) -> bool:
+    turned = (replace(start, heading=start.heading + side) for side in _SIDES)
+    return all(_fits(pose, scene, solids) for pose in turned)
+
+
+def _fits(start: PlanarPose, scene: Scene, solids: list[Solid]) -> bool:
     c, s = math.cos(start.heading), math.sin(start.heading)
     outline = _ROBOT @ np.array([[c, s], [-s, c]]) + (start.x, start.y)
     low, high = np.transpose([scene.room.x, scene.room.y])
