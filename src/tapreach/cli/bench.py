@@ -13,6 +13,7 @@ from tapreach.bench import accuracy as accuracy_bench
 from tapreach.bench import control as control_bench
 from tapreach.bench import locate as locate_bench
 from tapreach.bench import locate_plan, tracking_plan
+from tapreach.bench import online_path as online_bench
 from tapreach.bench import tracking as tracking_bench
 from tapreach.bench import video as video_bench
 from tapreach.bench.accuracy_plan import AccuracyPlan, Chapter, smoke_plan
@@ -124,6 +125,22 @@ def tracking(
         plan = tracking_plan.smoke_plan(used)
     Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: tracking_bench.run_tracking(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def online(
+    smoke: Smoke = False,
+    taps: Annotated[int, typer.Option(min=1, help="random ones, over all scenes")] = 12,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """What each picture costs while locating, step by step, on one core. A few minutes."""
+    used = secrets.randbits(32) if seed is None else seed
+    plan = online_bench.OnlinePlan(used, 1 if smoke else taps, smoke)
+    Console().print(f"seed {used}", highlight=False)
+    _run(lambda on_section: online_bench.run_online(plan, on_section, MonotonicClock()), json)
 
 
 @bench.command()
