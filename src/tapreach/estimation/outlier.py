@@ -67,7 +67,8 @@ def _gains_and_limits(model: ViewModel, solution: Solution) -> tuple[FloatArray,
     blocks = remaining.reshape(model.views, 2, model.views, 2)[every, :, every]
     uu, uv, vv = blocks[:, 0, 0] + 1e-9, blocks[:, 0, 1], blocks[:, 1, 1] + 1e-9
     u, v = residuals[0::2], residuals[1::2]
-    gains = (vv * u * u - 2.0 * uv * u * v + uu * v * v) / (uu * vv - uv * uv)
+    determinants = np.maximum(uu * vv - uv * uv, 1e-18)
+    gains = (vv * u * u - 2.0 * uv * u * v + uu * v * v) / determinants
     seen = _SLIP**-2
     shares = model.is_used / np.sqrt((uu + seen) * (vv + seen) - uv * uv)
     with np.errstate(divide="ignore"):
