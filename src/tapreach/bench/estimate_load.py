@@ -44,7 +44,7 @@ async def keep_estimating(
 
 
 def _shot(index: int, jpeg: bytes) -> Shot:
-    """Return a frame of a robot that drives ahead by a centimetre a frame, so that the background is asked."""
+    """Return a frame of a robot that drives ahead by a centimetre a frame, for the background to be asked."""
     return Shot(index, index * 33 * MS, jpeg, PlanarPose(0.01 * index), 0.0)
 
 
