@@ -8,14 +8,16 @@ from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
 _ITERATIONS = 8
-_TOLERANCE = 1e-6  # of the squared residuals still to gain: 1e-3 sigma
+_NEAR = 1e-4  # of the squared residuals still to gain: 0.01 sigma, over which the derivatives do not change
+_REACHED = 1e-6
 
 
 def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
     """Return the minimum of (6) reached from `start` (3 + k,) by full steps, all of which lower the cost.
 
-    None where a step does not, or puts the target behind a camera, or where they do not come to an end:
-    then it takes `gauss_newton.descended`.
+    The last step is so short that the views keep the derivatives from before it. None where a step raises the
+    cost or puts the target behind a camera, or where they do not come to an end: then it takes
+    `gauss_newton.descended`.
     """
     now = model.linearised(start[None])
     before = 0.0
@@ -23,14 +25,13 @@ def settled(model: ViewModel, start: FloatArray) -> Linearised | None:
         if not now.is_in_front[0]:
             return None
         step, promised = _step(now)
+        # The promise shrinks at least as fast again as it did.
+        if promised < _NEAR and promised * (promised / before if promised < before else 1.0) < _REACHED:
+            return now.moved(step)
         after = model.linearised(now.x + step)
         if not after.costs[0] <= now.costs[0] * (1.0 + 1e-12) + 1e-15:
             return None
-        now = after
-        # The promise shrinks at least as fast again as it did.
-        if promised * (promised / before if promised < before else 1.0) < _TOLERANCE:
-            return now
-        before = promised
+        now, before = after, promised
     return None
 
 

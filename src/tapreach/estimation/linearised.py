@@ -83,6 +83,11 @@ class Linearised:
         on_bearing = np.swapaxes(bearing, 1, 2) @ np.linalg.solve(noise, bearing)
         return np.asarray(np.linalg.slogdet(noise)[1] + np.linalg.slogdet(on_bearing)[1])
 
+    def moved(self, step: FloatArray) -> "Linearised":
+        """Return a single point moved by a step (3 + k,) over which the views may be taken as linear."""
+        residuals = self.residuals + self.by_target[0] @ step[:3] + self.by_errors[0] @ step[3:]
+        return Linearised(self.x + step, residuals, self.by_target, self.by_errors, self.is_in_front)
+
     def take(self, index: Index) -> "Linearised":
         """Return some of the m points."""
         return Linearised(*(getattr(self, each)[index] for each in _FIELDS))

@@ -18,7 +18,7 @@ from tapreach.estimation.nuisances import NuisancePriors
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.outlier import solve_without_outliers
 from tapreach.estimation.point_estimate import PointEstimate, Status
-from tapreach.estimation.point_in_frames import points_in_world_and_base
+from tapreach.estimation.point_in_frames import TargetInFrames
 from tapreach.estimation.range_posterior import RangePrior
 from tapreach.estimation.tap_noise import TapNoise
 from tapreach.estimation.verdict import reason_without_baseline, verdict
@@ -84,10 +84,11 @@ def _answer(
         return _unknown(status, reason, model, residuals_px)
     covariance = covariance_of(solution.on_target)
     is_determined = status is Status.DETERMINED
-    world = base = None
+    in_frames = None
     if is_determined:
         first, last = observations[0], observations[-1]
-        world, base = points_in_world_and_base(model, first, last, solution, covariance)
+        world_from_first = first.base_matrix @ first.mount_matrix
+        in_frames = TargetInFrames(model, solution, covariance, world_from_first, last.mount_matrix)
     return PointEstimate(
         status=status,
         reason=reason,
@@ -96,14 +97,11 @@ def _answer(
         inverse_depth=depth.inverse_depth,
         bearing_inverse_depth_cov=covariance,
         relative_sd=depth.relative_sd,
-        point_in_world=world.point if world is not None else None,
-        point_cov_in_world=world.covariance if world is not None else None,
-        point_in_base=base.point if base is not None else None,
-        point_cov_in_base=base.covariance if base is not None else None,
         range=depth.slant / depth.inverse_depth if is_determined else None,
         range_interval_95=None if status is Status.BEHIND else depth.range_interval(),
         residuals_px=residuals_px,
         rejected_views=rejected,
+        in_frames=in_frames,
     )
 
 
@@ -125,14 +123,11 @@ def _unknown(
         inverse_depth=None,
         bearing_inverse_depth_cov=None,
         relative_sd=float("inf"),
-        point_in_world=None,
-        point_cov_in_world=None,
-        point_in_base=None,
-        point_cov_in_base=None,
         range=None,
         range_interval_95=None,
         residuals_px=residuals_px if residuals_px is not None else np.zeros((model.views, 2)),
         rejected_views=tuple(int(i) for i in np.flatnonzero(~model.is_used)),
+        in_frames=None,
     )
 
 

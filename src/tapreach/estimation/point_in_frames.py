@@ -1,13 +1,13 @@
 """From bearing and inverse depth to uncertain points in world and base (docs/estimation.md, 10)."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from tapreach.estimation.camera_matrices import CameraMatrices
 from tapreach.estimation.map_solver import Solution
 from tapreach.estimation.motion_prior import CameraErrors
-from tapreach.estimation.observation import Observation
 from tapreach.estimation.small_rotations import backward_rotations, cross_matrices
 from tapreach.estimation.view_model import ViewModel, homogeneous_points
 from tapreach.geometry.finite import FloatArray
@@ -48,23 +48,45 @@ class _Place:
         return _Place(back.T @ self.point + shift, self.by_target, by_normals)
 
 
-def points_in_world_and_base(
-    model: ViewModel, first: Observation, last: Observation, solution: Solution, target_covariance: FloatArray
-) -> tuple[UncertainPoint, UncertainPoint]:
-    """Return the target in the world, the frame of the poses given, held fixed by the first of them; and in
-    the base at the last observation, which is what to drive by.
+@dataclass(frozen=True, eq=False)
+class TargetInFrames:
+    """The target in the world and in the base, computed when first asked for: many ask for neither.
 
+    world_from_first, base_from_last (4, 4): poses of the first camera in the world, of the last on the base.
     target_covariance (3, 3): of (a, b, rho).
     """
-    cameras = model.cameras(solution.x[None])
-    world_from_camera = first.base_matrix @ first.mount_matrix
-    world = _in_first(cameras, solution.x).moved(world_from_camera)
-    seen = _in_last(cameras, solution.x)
-    base = seen.misplaced(model.errors, solution.x[3:]).moved(last.mount_matrix)
-    by_target = np.concatenate([world.by_target, base.by_target])
-    by_normals = np.concatenate([world.by_normals, base.by_normals])
-    joint = _propagated(solution, target_covariance, by_target, by_normals)
-    return UncertainPoint(world.point, joint[:3, :3]), UncertainPoint(base.point, joint[3:, 3:])
+
+    model: ViewModel
+    solution: Solution
+    target_covariance: FloatArray
+    world_from_first: FloatArray
+    base_from_last: FloatArray
+
+    @cached_property
+    def world(self) -> UncertainPoint:
+        """The target in the frame of the poses given, held fixed by the first of them."""
+        return self._uncertain(_in_first(self._cameras, self.solution.x).moved(self.world_from_first))
+
+    @cached_property
+    def base(self) -> UncertainPoint:
+        """The target in the base at the last observation, which is what to drive by."""
+        seen = _in_last(self._cameras, self.solution.x)
+        on_base = seen.misplaced(self.model.errors, self.solution.x[3:])
+        return self._uncertain(on_base.moved(self.base_from_last))
+
+    @cached_property
+    def _cameras(self) -> CameraMatrices:
+        return self.model.cameras(self.solution.x[None])
+
+    def _uncertain(self, place: _Place) -> UncertainPoint:
+        """Return the place with what the errors of target and poses make of it: equation (7b)."""
+        views = self.solution.views
+        seen = views.by_errors[0] @ place.by_normals.T
+        solved = seen.T @ views.precision
+        direct = place.by_target - solved @ views.by_target[0]
+        remaining = place.by_normals @ place.by_normals.T - solved @ seen
+        covariance = direct @ self.target_covariance @ direct.T + remaining
+        return UncertainPoint(place.point, np.asarray(covariance))
 
 
 def _in_first(cameras: CameraMatrices, x: FloatArray) -> _Place:
@@ -90,15 +112,3 @@ def _dehomogenised(matrix: FloatArray, by_normals: FloatArray, homogeneous: Floa
     by_target = matrix[:, _TARGET_COLUMNS] / inverse_depth
     by_target[:, 2] -= point / inverse_depth
     return _Place(point, by_target, by_normals / inverse_depth)
-
-
-def _propagated(
-    solution: Solution, target_covariance: FloatArray, by_target: FloatArray, by_normals: FloatArray
-) -> FloatArray:
-    """Return the covariance of what depends on target and pose errors by (r, 3) and (r, k): equation (7b)."""
-    views = solution.views
-    seen = views.by_errors[0] @ by_normals.T
-    solved = seen.T @ views.precision
-    direct = by_target - solved @ views.by_target[0]
-    remaining = by_normals @ by_normals.T - solved @ seen
-    return np.asarray(direct @ target_covariance @ direct.T + remaining)

@@ -5,10 +5,11 @@ from dataclasses import dataclass, fields
 from enum import StrEnum
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.point_estimate import PointEstimate
-from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.geometry.finite import FloatArray
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.robot_noise import mount_noise as mount_noise
 from tapreach.tasks.robot_noise import odometry_noise as odometry_noise
@@ -37,6 +38,25 @@ class LocatedPoint(PointEstimate):
     heading_from: HeadingSource
     heading_reason: str
 
+    @property
+    def point_in_world(self) -> FloatArray | None:
+        """The target (3,) [m] in the world that the present base is exact in."""
+        in_base = self.point_in_base
+        return None if in_base is None else np.asarray(self._world_from_base.apply(in_base))
+
+    @property
+    def point_cov_in_world(self) -> FloatArray | None:
+        """Its covariance (3, 3) [m²]."""
+        covariance = self.point_cov_in_base
+        if covariance is None:
+            return None
+        rotation = self._world_from_base.rotation.as_matrix()
+        return np.asarray(rotation @ covariance @ rotation.T)
+
+    @property
+    def _world_from_base(self) -> RigidTransform:
+        return self.sightings[-1].world_from_base.to_rigid()
+
 
 def estimate(sightings: Sequence[Sighting], description: RobotDescription, with_advice: bool) -> LocatedPoint:
     """Return where the target of the sightings is, with everything that the robot's file and the background
@@ -48,20 +68,7 @@ def estimate(sightings: Sequence[Sighting], description: RobotDescription, with_
     ]
     found = estimate_point(observations, straight.errors, with_advice=with_advice)
     values = {field.name: getattr(found, field.name) for field in fields(found)}
-    values |= _hung_on(straight.sightings[-1].world_from_base, found)
     source = HeadingSource.BACKGROUND if not straight.reason else HeadingSource.WHEELS
     return LocatedPoint(
         **values, sightings=straight.sightings, heading_from=source, heading_reason=straight.reason
     )
-
-
-def _hung_on(world_from_base: PlanarPose, found: PointEstimate) -> dict[str, object]:
-    """Return the point and its covariance in the world that the present base is exact in."""
-    if found.point_in_base is None or found.point_cov_in_base is None:
-        return {}
-    pose = world_from_base.to_rigid()
-    rotation = pose.rotation.as_matrix()
-    return {
-        "point_in_world": np.asarray(pose.apply(found.point_in_base)),
-        "point_cov_in_world": rotation @ found.point_cov_in_base @ rotation.T,
-    }
