@@ -1,6 +1,7 @@
 """Views that do not fit the others: found by how much the cost falls without them (docs/estimation.md, 8)."""
 
 import math
+from collections.abc import Collection
 
 import numpy as np
 
@@ -11,21 +12,23 @@ from tapreach.geometry.finite import FloatArray
 _FALSE_ALARMS = 0.01
 _FEWEST_TO_BLAME = 4  # of three views, any two agree well enough without the third
 _SLIP = 5.0  # one sigma of a slip, in sigmas of a tap: how likely each view is to show one is judged by this
-_EQUALLY_SUSPECT = 2.0 * math.log(10.0)  # odds below ten to one do not tell which of two views slipped
+_EQUALLY_SUSPECT = 2.0 * math.log(3.0)  # odds below three to one do not tell which of two views slipped
 _TRIED = 3
 _HOPE = 0.8  # share of the limit that the linear prediction must promise before a view is tried without
 
 
-def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | None:
+def solve_without_outliers(
+    model: ViewModel, trusted: Collection[int] = ()
+) -> tuple[ViewModel, Solution] | None:
     """Return the model with unfitting views left out and its solution.
 
     A view is left out where the cost falls beyond chance without it, 1 % false alarms in all, split between
     the views as equation (8b) says; the one that is nearly as likely to be the culprit goes with it. Three
-    are always kept. None where no depth puts the target before all cameras.
+    are always kept, and those `trusted`. None where no depth puts the target before all cameras.
     """
     solution = solve(model)
     while solution is not None and (spare := int(model.is_used.sum()) - _FEWEST_TO_BLAME + 1) > 0:
-        suspects = _suspects(model, solution)[: min(spare, 2)]
+        suspects = _suspects(model, solution, trusted)[: min(spare, 2)]
         if not suspects:
             break
         for view in suspects:
@@ -34,12 +37,12 @@ def solve_without_outliers(model: ViewModel) -> tuple[ViewModel, Solution] | Non
     return None if solution is None else (model, solution)
 
 
-def _suspects(model: ViewModel, solution: Solution) -> list[int]:
+def _suspects(model: ViewModel, solution: Solution, trusted: Collection[int]) -> list[int]:
     """Return the views without which the cost falls beyond chance, most likely first, of like odds only."""
     expected, limits = _gains_and_limits(model, solution)
     excess: dict[int, float] = {}
     for view in np.argsort(limits - expected)[:_TRIED].tolist():
-        if expected[view] < _HOPE * limits[view]:
+        if view in trusted or expected[view] < _HOPE * limits[view]:
             continue
         found = solve(model.without(view))
         if found is not None and solution.cost - found.cost >= limits[view]:
