@@ -10,7 +10,7 @@ from test_rotation_from_background import room, seen
 
 from tapreach.errors import InputError
 from tapreach.estimation.camera_step import camera_step
-from tapreach.estimation.corrected_drive import SeenStep, corrected_drive
+from tapreach.estimation.corrected_drive import SEEN_WRONG, SeenStep, corrected_drive
 from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.motion_prior import MountNoise
 from tapreach.estimation.odometry_noise import OdometryNoise, pose_errors
@@ -53,7 +53,8 @@ def trials():
         true = [pose.compose(PlanarPose(*error)) for pose, error in zip(POSES, errors, strict=True)]
         off = np.repeat([MOUNT_NOISE.position_sigma, MOUNT_NOISE.angle_sigma], 3) * rng.normal(size=6)
         mount = perturbed(MOUNT, off)
-        steps = seen_steps(rng, true, mount, room(rng, 900))
+        wrong = SEEN_WRONG * rng.normal(size=6)
+        steps = seen_steps(rng, true, perturbed(MOUNT, off + wrong), room(rng, 900))
         drive = corrected_drive(POSES, NOISE, MOUNT, MOUNT_NOISE, steps)
         last = np.array(planar(drive.poses[-1].between(true[-1])))
         of_mount = pose_log(drive.base_from_camera.inv() * mount)
@@ -76,7 +77,7 @@ def test_heading_and_the_mount_turned_against_the_way_are_found():
     before, after, off, left = (np.array(column) for column in list(zip(*trials(), strict=True))[:4])
     assert np.std(after[:, 2]) < 0.4 * np.std(before[:, 2])
     pitch, yaw = 3, 4
-    assert np.std(left[:, pitch]) < 0.1 * np.std(off[:, pitch])
+    assert np.std(left[:, pitch]) < 0.4 * np.std(off[:, pitch])
     # A sideways slip of the wheels looks like a yaw of the mount: the rest of it stays unknown.
     assert np.std(left[:, yaw]) < 0.6 * np.std(off[:, yaw])
 

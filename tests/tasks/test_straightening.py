@@ -80,7 +80,7 @@ def test_target_is_where_it_is_from_the_present_base():
     assert found.point_in_world is not None
     in_base = SAID[-1].to_rigid().inv().apply(found.point_in_world)
     truth = true_poses()[-1].to_rigid().inv().apply(TARGET)
-    assert np.linalg.norm(in_base - truth) < 0.02 * np.linalg.norm(truth)
+    assert np.linalg.norm(in_base - truth) < 0.03 * np.linalg.norm(truth)
     by_wheels = estimate([replace(each, way=None) for each in with_background()], ROBOT, False)
     assert by_wheels.point_in_base is not None and found.point_in_base is not None
     wheels_off = np.linalg.norm(by_wheels.point_in_base - truth)
@@ -115,3 +115,39 @@ def test_poses_are_apart_by_way_or_by_turn_across_the_half_circle():
     assert is_apart(PlanarPose(), PlanarPose(0.03), 0.02, 1.0)
     assert is_apart(PlanarPose(), PlanarPose(heading=0.2), 1.0, 0.1)
     assert not is_apart(PlanarPose(heading=3.13), PlanarPose(heading=-3.13), 1.0, 0.1)
+
+
+def test_slip_that_only_the_longest_way_shows_is_not_believed():
+    seen = with_background()
+    sound, last = seen[2].way, seen[3].way
+    assert sound is not None and last is not None
+    seen[2] = replace(seen[2], way=replace(sound, since_id=1))
+    wrong = replace(last.knowledge, vector=40.0 * last.knowledge.vector + 1e5, has_slipped=True)
+    alone = [*seen[:3], replace(seen[3], way=SeenWay(1, wrong))]
+    trusted = [*seen[:3], replace(seen[3], way=None)]
+    ways = [
+        straightened(each, ROBOT).sightings[1].world_from_base.between(SAID[-1]) for each in (alone, trusted)
+    ]
+    assert not is_apart(ways[0], ways[1], 0.005, math.radians(0.3))
+    of_heading = [
+        np.linalg.norm(straightened(each, ROBOT).errors.by_base[-1, 5]) for each in (alone, trusted)
+    ]
+    assert of_heading[0] > 10.0 * of_heading[1]
+
+
+def test_views_that_break_off_from_the_others_widen_the_way_instead_of_the_truth():
+    """Wheels that turn against an obstacle: the last 24 cm were 2.4 cm."""
+    said = [PlanarPose()]
+    for step in [PlanarStep(0.3, 0.0)] + [PlanarStep(0.0, 0.08)] * 6:
+        said.append(said[-1].after(step))
+    true = [*said[:5], *(said[4].after(PlanarStep(0.0, 0.008 * i)) for i in (1, 2, 3))]
+    seen = []
+    for index, (pose, at) in enumerate(zip(said, true, strict=True)):
+        (u, v) = map(float, pixels_of(TARGET[None], at).pixels[0])
+        seen.append(Sighting(index, index, Pixel(u, v), 0.4, 1.0, pose))
+    found = estimate(seen, ROBOT, False)
+    in_base = true[-1].to_rigid().inv().apply(TARGET)
+    assert found.point_in_base is not None and found.point_cov_in_base is not None
+    error = found.point_in_base - in_base
+    assert error @ np.linalg.solve(found.point_cov_in_base, error) < 16.0
+    assert 0 not in found.rejected_views

@@ -1,5 +1,6 @@
 """What the wheels say of how the camera moved between two pictures, and how wrong that may be."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,8 +17,10 @@ from tapreach.geometry.pose import skew
 _PLANAR_ROWS = [0, 1, 5]
 _ROCKING = 0.002
 """Pitch and roll of a chassis on its wheels, one sigma of the difference between two stops [rad]."""
-SLIPPING = (0.1, 0.03, 0.2)
-"""One sigma of x, y [m] and heading [rad] when the wheels may have slipped."""
+_SLIP_LEAST, _SLIP_OF_WAY = np.array([0.01, 0.005]), np.array([0.5, 0.15])
+"""One sigma of x, y where wheels slip: in any step [m], and for each metre that they turned."""
+_SLIP_HEADING = 0.2
+"""And of the heading, for wheels that slip one more than the other [rad]."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,8 @@ class CameraStep:
     turn_axis: FloatArray
     second_camera_from_base: FloatArray
     """(6, 6): a small motion of the second base as its camera makes it."""
+    slip_sigmas: FloatArray
+    """(3,): `slip_sigmas` of the base's step."""
 
     @cached_property
     def rotation(self) -> FloatArray:
@@ -60,7 +65,7 @@ class CameraStep:
     def with_slip(self) -> "CameraStep":
         """Return the same step for wheels that may have slipped: hardly anything is known of it."""
         planar = np.zeros((6, 3))
-        planar[_PLANAR_ROWS] = np.diag(SLIPPING)
+        planar[_PLANAR_ROWS] = np.diag(self.slip_sigmas)
         return replace(self, by_wheels=self.second_camera_from_base @ planar)
 
     def moved(self, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -90,7 +95,16 @@ def camera_step(
     # A mount that is off displaces both cameras: what is left is the difference, seen from the second.
     of_mount = (np.eye(6) - inverse_adjoint(first_from_second)) @ sigmas
     up = np.asarray(base_from_camera.rotation.inv().apply([0.0, 0.0, 1.0]))
-    return CameraStep(first_from_second, to_camera @ of_base, of_mount, sigmas, up, to_camera)
+    slip = slip_sigmas(first_from_second_base)
+    return CameraStep(first_from_second, to_camera @ of_base, of_mount, sigmas, up, to_camera, slip)
+
+
+def slip_sigmas(step: PlanarPose) -> FloatArray:
+    """Return one sigma (3,) of x, y [m] and heading [rad] of a step on which the wheels may have slipped:
+    blocked ones turn and take the base nowhere.
+    """
+    way = math.hypot(step.x, step.y)
+    return np.array([*(_SLIP_LEAST + way * _SLIP_OF_WAY), _SLIP_HEADING])
 
 
 def inverse_adjoint(outer_from_inner: RigidTransform) -> FloatArray:

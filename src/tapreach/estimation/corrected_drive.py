@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
-from tapreach.estimation.camera_step import SLIPPING
+from tapreach.estimation.camera_step import slip_sigmas
 from tapreach.estimation.motion_prior import MountNoise, PoseErrors
 from tapreach.estimation.odometry_noise import OdometryNoise, carried, pose_errors
 from tapreach.estimation.step_knowledge import KNOWN, PLANAR, StepKnowledge
@@ -22,6 +22,11 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import perturbed
 
 _PLANAR_ROWS = [0, 1, 5]
+SEEN_WRONG = np.array([0.002, 0.0, 0.0, 0.005, 0.005, 0.0])
+"""One sigma of what the pictures of all steps have wrong in common, as an error of the mount that is not
+there [m, rad]: their direction of travel is drawn to where the near and stretching floor is. Measured in
+rendered rooms.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +72,12 @@ def corrected_drive(
     by_mount = np.diag(np.repeat([mount_noise.position_sigma, mount_noise.angle_sigma], 3))
     mean, root = _posterior(by_base, by_mount, poses, steps)
     on_base = by_base.shape[2]
+    on_mount = on_base + by_mount.shape[1]
     moved = by_base @ mean[:on_base]
     corrected = tuple(
         pose.compose(PlanarPose(*map(float, error))) for pose, error in zip(poses, moved, strict=True)
     )
-    mount = perturbed(base_from_camera, by_mount @ mean[on_base:])
+    mount = perturbed(base_from_camera, by_mount @ mean[on_base:on_mount])
     return CorrectedDrive(corrected, mount, _errors_left(by_base, by_mount, root))
 
 
@@ -85,10 +91,11 @@ def _with_slips(by_base: FloatArray, poses: Sequence[PlanarPose], steps: Sequenc
         if not step.knowledge.has_slipped:
             continue
         slip = np.zeros((len(poses), 3, 3))
+        sigmas = slip_sigmas(poses[step.first].between(poses[step.second]))
         for i in range(step.first + 1, len(poses)):
             share = min(1.0, (i - step.first) / (step.second - step.first))
             onward = _carried(poses[min(i, step.second)], poses[i])
-            slip[i] = onward @ np.diag(share * np.array(SLIPPING))
+            slip[i] = onward @ np.diag(share * sigmas)
         columns.append(slip)
     return np.concatenate(columns, axis=2)
 
@@ -96,14 +103,17 @@ def _with_slips(by_base: FloatArray, poses: Sequence[PlanarPose], steps: Sequenc
 def _posterior(
     by_base: FloatArray, by_mount: FloatArray, poses: Sequence[PlanarPose], steps: Sequence[SeenStep]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mean (k,) and a root (k, k) of the covariance of all normals, those of the mount last."""
-    on_base, size = by_base.shape[2], by_base.shape[2] + by_mount.shape[1]
+    """Return mean (k,) and a root (k, k) of the covariance of all normals: of the bases, of the mount, and of
+    what is seen wrong.
+    """
+    of_mount = np.concatenate([by_mount, np.diag(SEEN_WRONG)[:, SEEN_WRONG > 0.0]], axis=1)
+    on_base, size = by_base.shape[2], by_base.shape[2] + of_mount.shape[1]
     information, vector = np.eye(size), np.zeros(size)
     for step in steps:
         errors = np.zeros((KNOWN, size))
         before = _carried(poses[step.first], poses[step.second]) @ by_base[step.first]
         errors[:PLANAR, :on_base] = by_base[step.second] - before
-        errors[PLANAR:, on_base:] = by_mount
+        errors[PLANAR:, on_base:] = of_mount
         information += errors.T @ step.knowledge.information @ errors
         vector += errors.T @ step.knowledge.vector
     values, vectors = np.linalg.eigh(information)
@@ -121,4 +131,5 @@ def _errors_left(by_base: FloatArray, by_mount: FloatArray, root: FloatArray) ->
     on_base = by_base.shape[2]
     in_space = np.zeros((len(by_base), 6, len(root)))
     in_space[:, _PLANAR_ROWS] = by_base @ root[:on_base]
-    return PoseErrors(in_space, by_mount @ root[on_base:])
+    on_mount = on_base + by_mount.shape[1]
+    return PoseErrors(in_space, by_mount @ root[on_base:on_mount])

@@ -5,7 +5,7 @@ is what keeps the reported region honest (docs/estimation.md).
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -34,6 +34,7 @@ def estimate_point(
     nuisances: NuisancePriors | None = None,
     tap_noise: TapNoise | None = None,
     range_prior: RangePrior | None = None,
+    trusted: Collection[int] = (),
     with_advice: bool = True,
 ) -> PointEstimate:
     """Estimate where the target of the observations is.
@@ -44,7 +45,8 @@ def estimate_point(
     (6n, 6n) or independent (n, 6, 6). mount_noise: of the camera on the base, one error shared by all views.
     nuisances: further things shared by all views that may be off. tap_noise: how the errors of the taps hang
     together; None for independent ones. Single taps far off need no option: they are tested, named and left
-    out. range_prior: ranges that are possible at all. with_advice: look for the next move too (some ms).
+    out. range_prior: ranges that are possible at all. trusted: numbers of views that are never left
+    out, such as the one by which the target was named. with_advice: look for the next move too (some ms).
 
     Never fails on geometry: a singular or contradictory set of views is a result with its status and reason.
     Raises InputError where there is no observation or a covariance cannot be one.
@@ -57,7 +59,7 @@ def estimate_point(
     reason = reason_without_baseline(model)
     if reason is not None:
         return _unknown(Status.DEGENERATE, reason, model)
-    solved = solve_without_outliers(model)
+    solved = solve_without_outliers(model, trusted)
     if solved is None:
         return _unknown(Status.INCONSISTENT, "no point lies in front of all the cameras", model)
     model, solution = solved

@@ -56,6 +56,9 @@ class CameraSection(Section):
     cy: Finite | None = None
     distortion: tuple[Finite, Finite, Finite, Finite, Finite] = (0.0, 0.0, 0.0, 0.0, 0.0)
     delay_ms: float = Field(0.0, ge=0, description="from the middle of the exposure to arrival on the host")
+    timing_sigma_ms: float = Field(
+        4.0, ge=0, description="how far a picture's time may be off against the wheels', one sigma"
+    )
     mount: MountSection
 
     def model(self) -> Camera:

@@ -14,7 +14,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.tasks.robot_noise import mount_noise as mount_noise
 from tapreach.tasks.robot_noise import odometry_noise as odometry_noise
 from tapreach.tasks.sighting import Sighting, observation_of
-from tapreach.tasks.straightening import straightened
+from tapreach.tasks.straightening import Straightened, straightened
 
 
 class HeadingSource(StrEnum):
@@ -62,13 +62,37 @@ def estimate(sightings: Sequence[Sighting], description: RobotDescription, with_
     """Return where the target of the sightings is, with everything that the robot's file and the background
     say of its motion.
     """
-    straight = straightened(sightings, description)
-    observations = [
-        observation_of(sighting, description, straight.base_from_camera) for sighting in straight.sightings
-    ]
-    found = estimate_point(observations, straight.errors, with_advice=with_advice)
+    straight, found = _estimated(sightings, description, with_advice)
+    since = _last_before_contradiction(found, len(sightings))
+    if since is not None:
+        straight, found = _estimated(sightings, description, with_advice, slipped_since=since)
     values = {field.name: getattr(found, field.name) for field in fields(found)}
     source = HeadingSource.BACKGROUND if not straight.reason else HeadingSource.WHEELS
     return LocatedPoint(
         **values, sightings=straight.sightings, heading_from=source, heading_reason=straight.reason
     )
+
+
+def _estimated(
+    sightings: Sequence[Sighting],
+    description: RobotDescription,
+    with_advice: bool,
+    slipped_since: int | None = None,
+) -> tuple[Straightened, PointEstimate]:
+    straight = straightened(sightings, description, slipped_since)
+    observations = [
+        observation_of(sighting, description, straight.base_from_camera) for sighting in straight.sightings
+    ]
+    # What lies under the tapped pixel is the target, whatever is thought of the views after it.
+    found = estimate_point(observations, straight.errors, trusted=[0], with_advice=with_advice)
+    return straight, found
+
+
+def _last_before_contradiction(found: PointEstimate, views: int) -> int | None:
+    """Return the number of the last view that fits when the newest ones do not; None when they do.
+
+    Something is wrong from there on, and it may be the way: wheels that turn against an obstacle look the
+    same to the background as wheels that drive.
+    """
+    fitting = [number for number in range(views) if number not in found.rejected_views]
+    return fitting[-1] if fitting and fitting[-1] < views - 1 else None

@@ -140,12 +140,12 @@ class Follower:
         )
 
     def _moved_px(self, captured_ns: int) -> float:
-        poses, focal = self._context.poses, self._context.description.camera.fx
+        poses, camera = self._context.poses, self._context.description.camera
         try:
             step = poses.at(captured_ns - _RATE_OVER_NS).between(poses.at(captured_ns))
         except PoseExpired:
             return 0.0
-        return sigma_of_timing(step, _RATE_OVER_NS / SECOND, focal)
+        return sigma_of_timing(step, _RATE_OVER_NS / SECOND, camera)
 
     def _worth_following(self, frames: list[Frame]) -> list[Frame]:
         """Return the frames between which the robot moved enough to matter, the newest one, and

@@ -18,8 +18,6 @@ from tapreach.geometry.pose import pose_to_matrix
 from tapreach.geometry.ray import Ray
 from tapreach.robot.config import CameraSection, RobotDescription
 
-TIMING_SIGMA = 0.004
-"""How far the capture time of a frame may be off against the odometry, one sigma [s]."""
 NEAREST = 0.5
 """Distance [m] at which an advance moves the picture as much as is reckoned with."""
 TAP_SIGMA = 0.3
@@ -103,13 +101,13 @@ def _turned(vectors: FloatArray, poses: Sequence[PlanarPose]) -> FloatArray:
     return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
 
 
-def sigma_of_timing(step: PlanarPose, duration: float, focal: float) -> float:
+def sigma_of_timing(step: PlanarPose, duration: float, camera: CameraSection) -> float:
     """Return one sigma [px] that motion adds: the picture's speed times the uncertainty of the frame's time.
 
-    step: how the base moved in the `duration` [s] before the frame; focal [px].
+    step: how the base moved in the `duration` [s] before the frame.
     """
     turned, advanced = abs(wrapped(step.heading)), math.hypot(step.x, step.y)
-    return focal * (turned + advanced / NEAREST) / duration * TIMING_SIGMA
+    return camera.fx * (turned + advanced / NEAREST) / duration * camera.timing_sigma_ms / 1000.0
 
 
 def is_apart(first: PlanarPose, second: PlanarPose, distance: float, angle: float) -> bool:

@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from tapreach.estimation.corrected_drive import SeenStep, corrected_drive
 from tapreach.estimation.motion_prior import PoseErrors
 from tapreach.estimation.odometry_noise import pose_errors
+from tapreach.estimation.step_knowledge import NOTHING_SEEN
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Sighting
@@ -33,11 +34,18 @@ class Straightened:
     reason: str
 
 
-def straightened(sightings: Sequence[Sighting], description: RobotDescription) -> Straightened:
-    """Return sightings, in the order of time, with poses corrected by what was seen of the way."""
+def straightened(
+    sightings: Sequence[Sighting], description: RobotDescription, slipped_since: int | None = None
+) -> Straightened:
+    """Return sightings, in the order of time, with poses corrected by what was seen of the way.
+
+    slipped_since: number of the sighting from which on the wheels are not to be trusted.
+    """
     poses = [sighting.world_from_base for sighting in sightings]
     known = odometry_noise(description), description.camera.mount.base_from_camera(), mount_noise(description)
     steps = _seen_steps(sightings)
+    if slipped_since is not None:
+        steps.append(_unseen_slip(slipped_since, len(sightings) - 1))
     corrected = corrected_drive(poses, *known, steps)
     carry = poses[-1].compose(corrected.poses[-1].inverse())
     straight = tuple(
@@ -53,14 +61,31 @@ def straightened(sightings: Sequence[Sighting], description: RobotDescription) -
 
 
 def _seen_steps(sightings: Sequence[Sighting]) -> list[SeenStep]:
-    """Return from each key the longest way seen: shorter ones share its errors and say nothing more."""
+    """Return what to believe of the ways seen from each key."""
     number = {sighting.frame_id: i for i, sighting in enumerate(sightings)}
-    longest: dict[int, SeenStep] = {}
+    ways: dict[int, list[SeenStep]] = {}
     for i, sighting in enumerate(sightings):
         way = sighting.way
         if way is not None and not way.reason and way.since_id in number:
-            longest[way.since_id] = SeenStep(number[way.since_id], i, way.knowledge)
-    return list(longest.values())
+            ways.setdefault(way.since_id, []).append(SeenStep(number[way.since_id], i, way.knowledge))
+    return [step for of_key in ways.values() for step in _believed(of_key)]
+
+
+def _believed(of_key: list[SeenStep]) -> list[SeenStep]:
+    """Return the longest way from one key: shorter ones share its errors and say nothing more.
+
+    A slip that it alone shows may be a background that has gone or is hidden. Then the longest of the others
+    is taken, and for the rest of the way neither wheels nor pictures.
+    """
+    *others, longest = of_key
+    is_alone = bool(others) and not any(other.knowledge.has_slipped for other in others)
+    if not longest.knowledge.has_slipped or not is_alone:
+        return [longest]
+    return [others[-1], _unseen_slip(others[-1].second, longest.second)]
+
+
+def _unseen_slip(first: int, second: int) -> SeenStep:
+    return SeenStep(first, second, replace(NOTHING_SEEN, has_slipped=True))
 
 
 def _why_not(sightings: Sequence[Sighting]) -> str:
