@@ -42,11 +42,9 @@ def _step(now: Linearised) -> tuple[FloatArray, float]:
     """
     by_target, by_errors, normals = now.by_target[0], now.by_errors[0], now.x[0, 3:]
     expected = now.residuals[0] - by_errors @ normals
-    solved = now.solved(np.column_stack([by_target, expected])[None])[0]
-    products = by_target.T @ solved
-    _, on_target, failed = dposv(products[:, :3], -products[:, 3])
+    _, on_target, failed = dposv(now.on_target()[0], -(expected @ now.pull))
     if failed:
         return np.zeros(now.x.shape[1]), np.inf
-    weighted = solved[:, 3] + solved[:, :3] @ on_target
+    weighted = now.weighed(expected + by_target @ on_target)
     step = np.concatenate([on_target, -(weighted @ by_errors) - normals])
     return step, max(float(now.costs[0] - expected @ weighted), 0.0)  # below zero it is rounding

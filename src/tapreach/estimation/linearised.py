@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.lapack import dposv, dpotrf, dpotri
+from scipy.linalg.lapack import dpotrf, dpotri, dpotrs
 
 from tapreach.geometry.finite import FloatArray
 
@@ -54,17 +54,26 @@ class Linearised:
         if self.by_errors.shape[2] == 0:
             return right
         noise = self.noise(damping)
-        if len(noise) == 1:  # LAPACK as it is: numpy's wrapper takes longer than a small system itself
-            return np.asarray(dposv(noise[0], right[0])[1])[None]
         return np.asarray(np.linalg.solve(noise, right), dtype=np.float64)
 
     @cached_property
+    def factor(self) -> FloatArray:
+        """The lower Cholesky factor of C (2n, 2n) of a single point; C ≥ I is far from singular."""
+        return np.asarray(dpotrf(self.noise()[0], lower=1)[0])
+
+    @cached_property
+    def pull(self) -> FloatArray:
+        """C⁻¹ Jt (2n, 3) of a single point."""
+        return self.weighed(self.by_target[0])
+
+    def weighed(self, right: FloatArray) -> FloatArray:
+        """Return C⁻¹ right, (2n,) or (2n, r), of a single point."""
+        return right if self.by_errors.shape[2] == 0 else np.asarray(dpotrs(self.factor, right, lower=1)[0])
+
+    @cached_property
     def precision(self) -> FloatArray:
-        """C⁻¹ (2n, 2n) of a single point, for all that is asked of an answer; C ≥ I is far from singular."""
-        if self.by_errors.shape[2] == 0:
-            return np.eye(self.residuals.shape[1])
-        lower, _ = dpotrf(self.noise()[0], lower=1)
-        half = dpotri(lower, lower=1)[0]  # above the diagonal it holds zeros, as dpotrf leaves them
+        """C⁻¹ (2n, 2n) of a single point, for all that is asked of an answer."""
+        half = dpotri(self.factor, lower=1)[0]  # above the diagonal it holds zeros, as dpotrf leaves them
         precision = half + half.T
         precision.ravel()[:: len(half) + 1] *= 0.5
         return np.asarray(precision)
@@ -72,8 +81,7 @@ class Linearised:
     def on_target(self) -> FloatArray:
         """Return the information (m, 3, 3) on (a, b, rho), the pose errors marginalised: equation (7)."""
         if len(self.x) == 1:
-            by_target = self.by_target[0]
-            return np.asarray(by_target.T @ (self.precision @ by_target))[None]
+            return np.asarray(self.by_target[0].T @ self.pull)[None]
         return np.asarray(np.swapaxes(self.by_target, 1, 2) @ self.solved(self.by_target))
 
     def log_information_without_depth(self) -> FloatArray:
@@ -86,7 +94,9 @@ class Linearised:
     def moved(self, step: FloatArray) -> "Linearised":
         """Return a single point moved by a step (3 + k,) over which the views may be taken as linear."""
         residuals = self.residuals + self.by_target[0] @ step[:3] + self.by_errors[0] @ step[3:]
-        return Linearised(self.x + step, residuals, self.by_target, self.by_errors, self.is_in_front)
+        moved = Linearised(self.x + step, residuals, self.by_target, self.by_errors, self.is_in_front)
+        vars(moved).update(factor=self.factor, pull=self.pull)  # made of the derivatives alone
+        return moved
 
     def take(self, index: Index) -> "Linearised":
         """Return some of the m points."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -9,13 +10,12 @@ from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
 from tapreach.estimation.nuisances import NuisancePriors, focal_columns, mount_columns
-from tapreach.estimation.observation import Observation
+from tapreach.estimation.observation import Observation, matrix_of_mount
 from tapreach.estimation.odometry_noise import OdometryNoise, chain_errors, covariance_root, with_next_errors
 from tapreach.geometry.finite import FloatArray, not_negative
 from tapreach.geometry.gaussian import require_covariance
 from tapreach.geometry.pose import skew
 
-_PLANAR_ROWS = [0, 1, 5]
 _EXACT = NuisancePriors()
 
 
@@ -97,7 +97,7 @@ def camera_errors_with_next(
     with_poses = np.zeros_like(of_cameras[-1])
     if isinstance(motion, PoseErrors):
         with_poses[:, : motion.by_mount.shape[1]] = motion.by_mount
-    of_cameras = of_cameras + with_poses
+        of_cameras = of_cameras + with_poses
     of_mount = _mount_errors(mounts, mount_noise, priors)
     of_picture = _picture_errors(observations, next_pixels, len(mounts), priors.focal_scale, tap_bias_px)
     if of_mount is None and of_picture is None:
@@ -196,9 +196,9 @@ def _odometry_errors(
     if len(world_from_bases):
         coming = poses[len(given) :].reshape(*world_from_bases.shape[:2], 3)
         planar = with_next_errors(planar, poses[len(given) - 1], coming, noise)
-    used = planar.reshape(-1, planar.shape[2]).any(axis=0)
-    errors = np.zeros((len(matrices), 6, int(used.sum())))
-    errors[:, _PLANAR_ROWS] = planar[:, :, used]
+    planar = planar[:, :, planar.any(axis=(0, 1))]
+    errors = np.zeros((len(matrices), 6, planar.shape[2]))
+    errors[:, :2], errors[:, 5] = planar[:, :2], planar[:, 2]
     return errors
 
 
@@ -235,11 +235,13 @@ def _inverse_adjoints(mounts: Sequence[RigidTransform]) -> FloatArray:
     return np.array([adjoints[id(mount)] for mount in mounts])
 
 
+@lru_cache(maxsize=16)
 def _inverse_adjoint(base_from_camera: RigidTransform) -> FloatArray:
     """Return (6, 6): a base's small motion as the camera on it makes it."""
-    matrix = base_from_camera.as_matrix()
+    matrix = matrix_of_mount(base_from_camera)
     rotation = matrix[:3, :3]
     adjoint = np.zeros((6, 6))
     adjoint[:3, :3] = adjoint[3:, 3:] = rotation.T
     adjoint[:3, 3:] = -rotation.T @ skew(matrix[:3, 3])
+    adjoint.flags.writeable = False
     return adjoint

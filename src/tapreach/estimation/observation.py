@@ -1,7 +1,7 @@
 """One sighting of the target: a pixel, the camera that saw it, and where that camera was."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -42,9 +42,17 @@ class Observation:
     @cached_property
     def mount_matrix(self) -> FloatArray:
         """base_from_camera as (4, 4)."""
-        return np.asarray(self.base_from_camera.as_matrix(), dtype=np.float64)
+        return matrix_of_mount(self.base_from_camera)
 
     @property
     def world_from_camera(self) -> RigidTransform:
         """Pose of the camera in the world."""
         return self.world_from_base * self.base_from_camera
+
+
+@lru_cache(maxsize=16)
+def matrix_of_mount(base_from_camera: RigidTransform) -> FloatArray:
+    """Return a mount as (4, 4), read-only; a robot has one or few, and the same objects all the time."""
+    matrix = np.asarray(base_from_camera.as_matrix(), dtype=np.float64)
+    matrix.flags.writeable = False
+    return matrix

@@ -9,8 +9,6 @@ import numpy as np
 from tapreach.geometry.finite import FloatArray, not_negative
 from tapreach.geometry.planar_motion import PlanarPose
 
-_TURNING = np.array([1.0, 1.0, 0.0, 1.0, 0.0])  # what turns the base: `_step_columns`
-
 
 @dataclass(frozen=True)
 class OdometryNoise:
@@ -44,35 +42,51 @@ class OdometryNoise:
 
         Order x, y [m], heading [rad], perturbing on the right (in the frame after the step).
         """
-        return np.asarray(self.step_covariances(np.array([[step.x, step.y, step.heading]]))[0])
+        root = self.step_errors(np.array([[step.x, step.y, step.heading]]))[0, :, 2:]
+        return np.asarray(root @ root.T)
 
-    def step_covariances(self, steps: FloatArray) -> FloatArray:
-        """Return `step_covariance` (n, 3, 3) of many steps (n, 3), each x, y [m], heading [rad]."""
-        turns, advance = _split(steps)
-        columns = _step_columns(advance, turns[1])
+    def step_errors(self, steps: FloatArray) -> FloatArray:
+        """Return (n, 3, 5): the errors of steps (n, 3), each x, y [m], heading [rad], per unit normal.
+
+        The first two columns are the shared scales of advances and turns. The others are each step's own:
+        heading with the way sideways that comes of it, sideways without a turn, and along the advance. They
+        are a root of `step_covariance` in closed form, so that what cannot err is exactly zero.
+        """
+        (first, last), advance = _split(steps)
         distance = np.abs(advance)
-        variances = np.empty((5, len(steps)))
-        variances[:2] = _variances(np.abs(turns), self.turn_per_sqrt_rad, self.turn_fraction)
-        variances[2] = _variances(distance, self.advance_per_sqrt_m, self.advance_fraction)
-        variances[3] = self.turn_per_sqrt_m**2 * distance
-        # A heading that drifts on the way also leaves this part of the sideways error unexplained.
-        variances[4] = distance * (self.slip_per_sqrt_m**2 + variances[3] * distance / 12.0)
-        return np.asarray((columns * variances.T[:, None]) @ columns.mT)
-
-    def scale_columns(self, steps: FloatArray) -> FloatArray:
-        """Return (n, 3, 2): the errors of steps (n, 3) for one sigma of the two shared scales."""
-        scaled = np.zeros((len(steps), 3, 2))
-        if self.advance_scale == 0.0 and self.turn_scale == 0.0:
-            return scaled
-        turns, advance = _split(steps)
-        columns = _step_columns(advance, turns[1])
-        scaled[..., 0] = columns[..., 2] * (self.advance_scale * advance)[:, None]
-        scaled[..., 1] = self.turn_scale * (columns[..., :2] @ turns.T[:, :, None])[..., 0]
-        return scaled
+        before = _variances(np.abs(first), self.turn_per_sqrt_rad, self.turn_fraction)
+        after = _variances(np.abs(last), self.turn_per_sqrt_rad, self.turn_fraction)
+        drift = self.turn_per_sqrt_m**2 * distance
+        turned = before + after
+        heading = turned + drift
+        shares = 1.0 / np.maximum(heading, 1e-300)  # without any turning there is nothing to share
+        # Turns before the advance swing its end by all of it, a drift on the way by half.
+        swing = advance * (before + 0.5 * drift) * shares
+        swing_left = (before * after + 0.25 * turned * drift) * shares
+        # A heading that drifts on the way also leaves a twelfth of its square in the sideways error.
+        sideways = advance * advance * (swing_left + drift / 12.0) + self.slip_per_sqrt_m**2 * distance
+        along = _variances(distance, self.advance_per_sqrt_m, self.advance_fraction)
+        in_step = np.zeros((len(steps), 3, 5))  # of the frame that looks along the advance
+        in_step[:, 2, 2], in_step[:, 1, 3], in_step[:, 0, 4] = np.sqrt((heading, sideways, along))
+        in_step[:, 1, 2] = swing * in_step[:, 2, 2]
+        in_step[:, 0, 0] = self.advance_scale * advance
+        in_step[:, 1, 1] = self.turn_scale * first * advance
+        in_step[:, 2, 1] = self.turn_scale * (first + last)
+        return np.asarray(_turned(last) @ in_step)
 
 
 def _variances(amounts: FloatArray, per_sqrt: float, fraction: float) -> FloatArray:
     return np.asarray(amounts * (per_sqrt**2 + fraction**2 * amounts))
+
+
+def _turned(turns: FloatArray) -> FloatArray:
+    """Return (n, 3, 3): to the frame after turns (n,) from that before them."""
+    rotations = np.zeros((len(turns), 3, 3))
+    rotations[:, 0, 0] = rotations[:, 1, 1] = np.cos(turns)
+    rotations[:, 0, 1] = np.sin(turns)
+    rotations[:, 1, 0] = -rotations[:, 0, 1]
+    rotations[:, 2, 2] = 1.0
+    return rotations
 
 
 def _split(steps: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -99,19 +113,6 @@ def _wrapped(angles: FloatArray) -> FloatArray:
     return np.asarray(angles - 2.0 * math.pi * np.rint(angles / (2.0 * math.pi)))
 
 
-def _step_columns(advance: FloatArray, last_turn: FloatArray) -> FloatArray:
-    """Return (n, 3, 5): the end poses' change with first turn, last turn, advance, drift, sideways slip."""
-    c, s = np.cos(last_turn), np.sin(last_turn)
-    columns = np.zeros((len(advance), 3, 5))
-    columns[:, 0, 2] = columns[:, 1, 4] = c
-    columns[:, 0, 4] = s
-    columns[:, 1, 2] = -s
-    columns[:, :2, 0] = advance[:, None] * columns[:, :2, 4]
-    columns[:, :2, 3] = 0.5 * columns[:, :2, 0]
-    columns[:, 2] = _TURNING
-    return columns
-
-
 def pose_errors(poses: Sequence[PlanarPose], noise: OdometryNoise) -> FloatArray:
     """Return `chain_errors` (n, 3, k) of poses world_from_base along the way."""
     return chain_errors(np.array([(pose.x, pose.y, pose.heading) for pose in poses]), noise)
@@ -125,15 +126,14 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     transpose.
     """
     steps = _ways(poses[:-1], poses[1:])
-    count = len(steps)
-    if count == 1:
-        return _one_step_errors(steps, noise)
+    count, own = len(steps), noise.step_errors(steps)
+    if count == 1:  # nothing is carried on
+        return np.concatenate([np.zeros_like(own), own])
     onward = carried(_ways(poses[0], poses[1:]))
     backward = _inverses(onward)
     errors = np.zeros((count + 1, 3, 2 + 3 * count))
-    errors[1:, :, :2] = onward @ np.cumsum(backward @ noise.scale_columns(steps), axis=0)
-    in_start = backward @ covariance_root(noise.step_covariances(steps))
-    by_step = onward[:, None] @ in_start
+    errors[1:, :, :2] = onward @ np.cumsum(backward @ own[..., :2], axis=0)
+    by_step = onward[:, None] @ (backward @ own[..., 2:])
     by_step *= np.tri(count)[:, :, None, None]  # a step moves no pose before it
     errors[1:, :, 2:] = np.swapaxes(by_step, 1, 2).reshape(count, 3, 3 * count)
     return errors
@@ -146,14 +146,6 @@ def _inverses(adjoints: FloatArray) -> FloatArray:
     inverses[:, :2, 2:] = -(inverses[:, :2, :2] @ adjoints[:, :2, 2:])
     inverses[:, 2, 2] = 1.0
     return inverses
-
-
-def _one_step_errors(steps: FloatArray, noise: OdometryNoise) -> FloatArray:
-    """Return `chain_errors` (2, 3, 5) of one step (1, 3): nothing is carried on."""
-    errors = np.zeros((2, 3, 5))
-    errors[1:, :, :2] = noise.scale_columns(steps)
-    errors[1:, :, 2:] = covariance_root(noise.step_covariances(steps))
-    return errors
 
 
 def with_next_errors(
@@ -170,10 +162,11 @@ def with_next_errors(
     on_ways = errors[n:].reshape(count, length, 3, -1)
     before = np.broadcast_to(last, (count, 3)), np.broadcast_to(errors[n - 1], (count, *errors.shape[1:]))
     for i in range(length):
-        steps, own = _ways(before[0], coming[:, i]), slice(k + 3 * i, k + 3 * i + 3)
+        steps = _ways(before[0], coming[:, i])
+        own = noise.step_errors(steps)
         on_ways[:, i] = carried(steps) @ before[1]
-        on_ways[:, i, :, :2] += noise.scale_columns(steps)
-        on_ways[:, i, :, own] = covariance_root(noise.step_covariances(steps))
+        on_ways[:, i, :, :2] += own[..., :2]
+        on_ways[:, i, :, k + 3 * i : k + 3 * i + 3] = own[..., 2:]
         before = coming[:, i], on_ways[:, i]
     return errors
 

@@ -259,6 +259,8 @@ def _mounts(observations: Sequence[Observation]) -> FloatArray:
 def pixel_weights(camera: Camera, normalised: FloatArray) -> FloatArray:
     """Return d pixel / d (x/z, y/z) at (n, 2): (n, 2, 2) [px]."""
     if camera.distortion == NO_DISTORTION:
-        return np.array([[[camera.fx, 0.0], [0.0, camera.fy]]] * len(normalised))
+        weights = np.zeros((len(normalised), 2, 2))
+        weights[:, 0, 0], weights[:, 1, 1] = camera.fx, camera.fy
+        return weights
     slopes = distortion_jacobian(normalised, camera.distortion)
     return np.asarray(np.array([camera.fx, camera.fy])[:, None] * slopes)
