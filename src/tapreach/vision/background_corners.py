@@ -9,8 +9,8 @@ import numpy as np
 from tapreach.vision.flow import Points
 from tapreach.vision.image_io import Gray
 
-_MOST = 160
-_APART = 16
+_MOST = 220
+_APART = 14
 """Distance of corners from each other [px]."""
 _QUALITY = 0.01
 _LEAST_STRENGTH = 2e-4
@@ -44,7 +44,7 @@ def in_whole(places: Points) -> Points:
 
 
 def spread_corners(half: Gray, masked: Sequence[Box] = ()) -> Points:
-    """Return up to 160 corners (n, 2) [px of the whole picture], none inside the boxes `masked` of it.
+    """Return up to 220 corners (n, 2) [px of the whole picture], none inside the boxes `masked` of it.
 
     half: the picture at half its size, see `halved`.
     """
