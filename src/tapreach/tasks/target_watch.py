@@ -14,11 +14,9 @@ from tapreach.tasks.distance_range import DistanceRange
 from tapreach.tasks.guessing import guesses_for
 from tapreach.tasks.sighting import TAP_SIGMA, SeenWay, Sighting, is_apart, ray_of
 from tapreach.vision.image_io import Gray
-from tapreach.vision.track import Guess, Track, TrackStatus
+from tapreach.vision.track import Guess, TrackStatus
 from tapreach.vision.tracker import PatchTracker
 
-UNSURE_FACTOR = 2.0
-"""An unsure pixel counts with this many times its sigma."""
 _WAY_DISTANCE, _WAY_ANGLE = 0.03, radians(3.0)
 """While the robot moves its way is measured this often."""
 _ABOUT = 1.0, 0.85, 1.18
@@ -90,7 +88,7 @@ class TargetWatch:
         loss = track.reason if track.status is TrackStatus.LOST else ""
         if track.pixel is None or not track.pixel.is_inside(self._size):
             return Followed(None, loss)
-        sigma = hypot(_sigma_of(track), shot.moved_px)
+        sigma = hypot(track.sigma, shot.moved_px)
         seen = Sighting(
             shot.frame_id, shot.captured_ns, track.pixel, sigma, track.scale, shot.world_from_base
         )
@@ -122,7 +120,3 @@ class TargetWatch:
         if is_key:
             self._background.renew(picture, seen.frame_id, seen.world_from_base)
         return replace(seen, way=way, is_key=is_key)
-
-
-def _sigma_of(track: Track) -> float:
-    return track.sigma * (1.0 if track.status is TrackStatus.FOLLOWED else UNSURE_FACTOR)

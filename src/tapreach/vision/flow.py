@@ -1,5 +1,5 @@
-"""How the surroundings of a place moved from one picture to the next: corners, KLT forth and back, a
-similarity.
+"""How the surroundings of a place moved from one picture to the next: corners, KLT forth and back, and the
+two similarities that most of them agree on. Things before and behind each other move differently.
 
 Source: Shi and Tomasi 1994; Kalal, Mikolajczyk and Matas, "Forward-backward error", ICPR 2010.
 """
@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tapreach.geometry.finite import FloatArray
 from tapreach.vision.image_io import Gray
 from tapreach.vision.warp import Warp
 
@@ -22,6 +23,9 @@ _CRITERIA = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 20, 0.02)
 _FORTH_AND_BACK = 0.8
 _CORNERS = 36
 _LEAST_AGREEING = 5
+_MOST_MOTIONS = 2
+_CORNER_NOISE, _MOST_APART = 0.12, 6.0
+"""What a corner is followed to, one sigma, and beyond which it has jumped [px]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +35,8 @@ class Motion:
     now_from_before: Warp
     agreeing: Points
     """Corners (n, 2) in the later picture that move together."""
+    disagreement: FloatArray
+    """(2, 2) [px²]: mean square of how all corners near the place moved differently, noise taken off."""
 
 
 def corners_near(picture: Gray, u: float, v: float, radius: float) -> Points:
@@ -48,19 +54,39 @@ def corners_near(picture: Gray, u: float, v: float, radius: float) -> Points:
     return np.asarray(found.reshape(-1, 2) + np.array([left, top]), dtype=np.float32)
 
 
-def flow_between(before: Gray, now: Gray, points: Points, shift: tuple[float, float]) -> Motion | None:
-    """Return the similarity that most of `points` (n, 2) agree on, or None when too few do.
+def motions_between(
+    before: Gray, now: Gray, points: Points, shift: tuple[float, float]
+) -> tuple[Motion, ...]:
+    """Return the similarities that most of `points` (n, 2) agree on, the one with most of them first: at
+    most two, none when too few agree.
 
     `shift` [px] is where they are expected to have gone.
     """
     if len(points) < _LEAST_AGREEING:
-        return None
+        return ()
     start = points.reshape(-1, 1, 2)
     forth = _follow(before, now, start, start + np.array(shift, dtype=np.float32))
     back = _follow(now, before, forth[0], start.copy())
     gap = np.linalg.norm(back[0] - start, axis=2).ravel()
     is_kept = forth[1] & back[1] & (gap < _FORTH_AND_BACK)
-    return _agreed(points[is_kept], forth[0].reshape(-1, 2)[is_kept])
+    left, gone = points[is_kept], forth[0].reshape(-1, 2)[is_kept]
+    every, motions = (left, gone), list[Motion]()
+    while len(motions) < _MOST_MOTIONS:
+        found = _agreed(left, gone)
+        if found is None:
+            break
+        warp, inliers = found
+        motions.append(Motion(warp, gone[inliers], _disagreement(warp, *every)))
+        left, gone = left[~inliers], gone[~inliers]
+    return tuple(motions)
+
+
+def _disagreement(warp: Warp, before: Points, now: Points) -> FloatArray:
+    apart = (before @ warp[:, :2].T + warp[:, 2] - now).astype(np.float64)
+    length = np.maximum(np.linalg.norm(apart, axis=1, keepdims=True), 1e-9)
+    apart *= np.minimum(_MOST_APART / length, 1.0)
+    values, axes = np.linalg.eigh(apart.T @ apart / len(apart) - _CORNER_NOISE**2 * np.eye(2))
+    return np.asarray((axes * np.maximum(values, 0.0)) @ axes.T)
 
 
 def _follow(before: Gray, now: Gray, points: Points, guess: Points) -> tuple[Points, NDArray[np.bool_]]:
@@ -77,7 +103,7 @@ def _follow(before: Gray, now: Gray, points: Points, guess: Points) -> tuple[Poi
     return np.asarray(found, dtype=np.float32), status.ravel() > 0
 
 
-def _agreed(before: Points, now: Points) -> Motion | None:
+def _agreed(before: Points, now: Points) -> tuple[Warp, NDArray[np.bool_]] | None:
     if len(before) < _LEAST_AGREEING:
         return None
     similarity, inliers = cv2.estimateAffinePartial2D(
@@ -85,4 +111,4 @@ def _agreed(before: Points, now: Points) -> Motion | None:
     )
     if similarity is None or int(inliers.sum()) < _LEAST_AGREEING:
         return None
-    return Motion(np.asarray(similarity, dtype=np.float64), now[inliers.ravel() > 0])
+    return np.asarray(similarity, dtype=np.float64), inliers.ravel() > 0

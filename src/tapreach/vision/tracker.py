@@ -13,22 +13,22 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from tapreach.errors import InputError
+from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize, Pixel, require_inside
 from tapreach.vision.band import Band
-from tapreach.vision.flow import Motion, Points, corners_near, flow_between
+from tapreach.vision.carried import Start, carried, conflict, joined, sigma_of
+from tapreach.vision.flow import Motion, Points, corners_near, motions_between
 from tapreach.vision.image_io import Gray
 from tapreach.vision.look import Fit, Look, context_score, fit_look, later_look, tapped_look
 from tapreach.vision.patch import cut_patch
 from tapreach.vision.search import find_again, rival_distance
 from tapreach.vision.track import Guess, Track, TrackStatus
-from tapreach.vision.warp import Warp, calmed, chained, scale_of, warp_at
+from tapreach.vision.warp import Warp, calmed, scale_of, warp_at
 
 _GOOD_SCORE = 0.80
 _SURE_SCORE = 0.90
 _LEAST_SCORE = 0.70
 _LEAST_SUPPORT = 0.35
-_APART_FROM_SURROUNDINGS = 2.5
-"""A place that moves this far apart from its surroundings is doubted [px of the tapped frame]."""
 _NEW_LOOK_SCALE = 1.25
 _TAPPED_IS_BETTER = 8.0
 """The tapped look is preferred to a later one that is nearer in scale by less than this factor."""
@@ -37,9 +37,20 @@ _FOUND_SCORE, _LEAST_CONTEXT = 0.85, 0.4
 _SHORT = 70.0
 """A band so short [px] leaves little else to mistake the place for."""
 _MOST_LOOKS = 10
-_UNSURE_SIGMA, _MOST_SIGMA = 2.0, 8.0
+_UNSURE_SIGMA, _MOST_SIGMA = 2.0, 40.0
 """A place known worse than this is doubted, or lost [px of the tapped frame]."""
-_POINTS_WANTED = 14
+_CARRIED_SCORE, _MOST_CARRIED, _CARRIED_SIGMA = 0.4, 8, 0.5
+"""A place whose look fits no worse than this is carried along by its surroundings for so many pictures at
+most; each adds so much [px of the tapped frame].
+"""
+_CARRIED_APART = 2.0
+"""Surroundings that move farther apart in one picture cannot carry it [px of the tapped frame]."""
+_MOST_FITS = 3
+"""So many looks are fitted in one picture, and one more to a place found again: it must not take long."""
+_DOUBTED = 2.0
+"""The sigma of a doubtful place counts so many times."""
+_LEAST_AROUND, _MOST_AROUND = 26.0, 60.0
+"""Radius [px] around the place in which corners are followed."""
 
 
 class PatchTracker:
@@ -60,9 +71,11 @@ class PatchTracker:
         self._rival = rival_distance(patch, picture)
         self._warp = warp_at(u, v)
         self._picture = picture
+        self._own = np.zeros((2, 2))
         self._points = self._corners()
-        self._lost_for = 0
+        self._lost_for = self._carried_for = 0
         self._must_prove = False
+        self._fits_left = _MOST_FITS
 
     def follow(self, picture: Gray, guesses: Sequence[Guess] | None = None) -> Track:
         """Return where the place is in the next picture.
@@ -76,70 +89,83 @@ class PatchTracker:
                 f"the picture is {width} by {height} px; this place is followed in pictures of "
                 f"{self._size.width} by {self._size.height} px"
             )
+        self._fits_left = _MOST_FITS
         if guesses is not None and not guesses:
             return self._lost("it has left the picture")
         band = Band.around(guesses, self._lost_for) if guesses else None
         if self._lost_for:
             return self._resume(picture, guesses, band)
-        motion = self._motion_to(picture, guesses)
-        fit = self._best(picture, self._starts(motion, guesses), band)
-        return self._accept(picture, fit, motion) if fit else self._search_for(picture, guesses, band)
+        motions = self._motions_to(picture, guesses)
+        along = carried(motions, self._warp, self._own)
+        starts = [*along, *self._other_starts(motions, guesses)]
+        fit, poor = self._best(picture, starts, band)
+        if fit is not None:
+            return self._accept(picture, *fit)
+        if poor is not None and self._is_carried(*poor, along, band):
+            return self._carry(picture, *poor)
+        return self._search_for(picture, guesses, band)
 
     def _resume(self, picture: Gray, guesses: Sequence[Guess] | None, band: Band | None) -> Track:
         """Go on where little else is possible than the place itself; else search."""
         if band is not None and band.length < _SHORT:
-            fit = self._best(picture, self._starts(None, guesses), band)
-            if fit is not None and _is_good(fit):
+            found, _ = self._best(picture, self._other_starts((), guesses), band)
+            if found is not None and _is_good(found[0]):
                 self._must_prove = True
-                return self._accept(picture, fit, None)
+                return self._accept(picture, *found)
         return self._search_for(picture, guesses, band)
 
-    def _motion_to(self, picture: Gray, guesses: Sequence[Guess] | None) -> Motion | None:
+    def _motions_to(self, picture: Gray, guesses: Sequence[Guess] | None) -> tuple[Motion, ...]:
         shift = (0.0, 0.0)
         if guesses:
             shift = (guesses[0].u - float(self._warp[0, 2]), guesses[0].v - float(self._warp[1, 2]))
-        motion = flow_between(self._picture, picture, self._points, shift)
-        return (
-            motion
-            if motion or not guesses
-            else flow_between(self._picture, picture, self._points, (0.0, 0.0))
-        )
+        motions = motions_between(self._picture, picture, self._points, shift)
+        if motions or not guesses:
+            return motions
+        return motions_between(self._picture, picture, self._points, (0.0, 0.0))
 
-    def _starts(self, motion: Motion | None, guesses: Sequence[Guess] | None) -> Iterable[Warp]:
-        if motion is not None:
-            yield calmed(chained(motion.now_from_before, self._warp))
-        elif not guesses:
-            yield calmed(self._warp)
-        if guesses:
-            yield self._moved_to(guesses[0])
+    def _other_starts(self, motions: Sequence[Motion], guesses: Sequence[Guess] | None) -> list[Start]:
+        starts = [] if motions or guesses else [Start(calmed(self._warp), None)]
+        return [*starts, *([Start(self._moved_to(guesses[0]), None)] if guesses else [])]
 
     def _moved_to(self, guess: Guess) -> Warp:
         ratio = guess.scale / scale_of(self._warp)
         return np.column_stack([self._warp[:, :2] * ratio, (guess.u, guess.v)])
 
-    def _best(self, picture: Gray, starts: Iterable[Warp], band: Band | None) -> Fit | None:
-        """Return the best possible fit over all starts; the first good one ends the search."""
-        best: Fit | None = None
+    def _best(
+        self, picture: Gray, starts: Sequence[Start], band: Band | None
+    ) -> tuple[tuple[Fit, Start] | None, tuple[Fit, Start] | None]:
+        """Return the best possible fit over all starts, and the best of those that are too bad, each with the
+        start it was found from; the first good one ends the search.
+        """
+        best: tuple[Fit, Start] | None = None
+        poor: tuple[Fit, Start] | None = None
         for start in starts:
-            fit = self._fit(picture, start, band)
-            if fit is not None and (best is None or fit.score > best.score):
-                best = fit
-            if best is not None and _is_good(best):
+            for fit in self._fits(picture, start.warp, band):
+                if not _is_possible(fit):
+                    if start.covariance is not None and (poor is None or fit.score > poor[0].score):
+                        poor = fit, start
+                elif best is None or fit.score > best[0].score:
+                    best = fit, start
+            if best is not None and _is_good(best[0]):
                 break
-        return best
+        return best, poor
+
+    def _fits(self, picture: Gray, start: Warp, band: Band | None) -> Iterable[Fit]:
+        """Fit the looks that are near in scale, the nearest first, until one fits well."""
+        for look in self._by_likeness(scale_of(start))[:2]:
+            if self._fits_left <= 0:
+                return
+            self._fits_left -= 1
+            fit = fit_look(look, picture, start)
+            if fit is not None and _is_within(band, fit):
+                yield _with_band(fit, band)
+                if _is_good(fit):
+                    return
 
     def _fit(self, picture: Gray, start: Warp, band: Band | None) -> Fit | None:
-        """Fit the looks that are near in scale, the nearest first, until one fits well."""
-        best: Fit | None = None
-        for look in self._by_likeness(scale_of(start))[:2]:
-            fit = fit_look(look, picture, start)
-            if fit is None or not _is_possible(fit) or not _is_within(band, fit):
-                continue
-            if best is None or fit.score > best.score:
-                best = fit
-            if _is_good(fit):
-                break
-        return _with_band(best, band)
+        """Return the best possible fit near `start`."""
+        possible = filter(_is_possible, self._fits(picture, start, band))
+        return max(possible, key=lambda fit: fit.score, default=None)
 
     def _by_likeness(self, scale: float) -> list[Look]:
         first = self._looks[0]
@@ -151,13 +177,14 @@ class PatchTracker:
 
     def _search_for(self, picture: Gray, guesses: Sequence[Guess] | None, band: Band | None) -> Track:
         self._lost_for += 1
+        self._fits_left = max(self._fits_left, 1)
         found = find_again(self._looks, picture, self._warp, guesses, band, self._lost_for)
         fit = self._fit(picture, found, band) if found is not None else None
         if fit is None or not self._is_proven(picture, fit, band):
             self._lost_for -= 1
             return self._lost(self._loss_reason(guesses))
         self._must_prove = True
-        return self._accept(picture, fit, None)
+        return self._accept(picture, fit, Start(fit.warp, None))
 
     def _is_proven(self, picture: Gray, fit: Fit, band: Band | None) -> bool:
         """Tell whether a place found again is the one: it fits, so do its surroundings, and no look-alike
@@ -188,40 +215,57 @@ class PatchTracker:
             return f"it cannot be told from its surroundings: {self.weakness}"
         return "it is hidden, or looks too different now"
 
-    def _accept(self, picture: Gray, fit: Fit, motion: Motion | None) -> Track:
-        before, self._warp, self._picture, self._lost_for = self._warp, fit.warp, picture, 0
-        self._points = motion.agreeing if motion is not None else np.zeros((0, 2), np.float32)
-        if len(self._points) < _POINTS_WANTED:
-            self._points = self._corners()
+    def _accept(self, picture: Gray, found: Fit, start: Start) -> Track:
+        is_odd = conflict(found, start)
+        fit = found if is_odd else joined(found, start)
+        self._move_to(picture, fit.warp, fit.own)
+        self._carried_for = 0
         sigma = fit.sigma
         if sigma > _MOST_SIGMA * max(1.0, scale_of(fit.warp)):
             reason = f"its place would be known to {sigma:.0f} px only"
             return Track(TrackStatus.LOST, reason, None, 0.0, scale_of(fit.warp), fit.score)
-        reason = self._doubt(fit, sigma) or self._odd_motion(fit, before, motion) or self.weakness
+        doubt = self._doubt(fit) or ("it moves apart from its surroundings" if is_odd else "")
+        reason = doubt or _vagueness(fit) or self.weakness
         if _is_good(fit) and reason in ("", self.weakness):
             self._learn(picture, fit)
         self._must_prove = False
         status = TrackStatus.UNSURE if reason else TrackStatus.FOLLOWED
+        sigma *= _DOUBTED if doubt else 1.0
         return Track(status, reason, Pixel(*map(float, fit.warp[:, 2])), sigma, scale_of(fit.warp), fit.score)
 
-    def _doubt(self, fit: Fit, sigma: float) -> str:
+    def _is_carried(self, fit: Fit, start: Start, along: Sequence[Start], band: Band | None) -> bool:
+        """Tell whether a look that does not fit may be due to what it is, and not to what hides it: what
+        slides in front of it moves otherwise than its surroundings, and than the robot makes it move.
+        """
+        apart = float(np.linalg.norm(along[0].warp[:, 2] - along[-1].warp[:, 2]))
+        is_one = apart < _CARRIED_APART * max(1.0, scale_of(along[0].warp))
+        is_expected = band is not None and band.holds(*map(float, start.warp[:, 2]))
+        return is_one and is_expected and self._carried_for < _MOST_CARRIED and fit.score > _CARRIED_SCORE
+
+    def _carry(self, picture: Gray, fit: Fit, start: Start) -> Track:
+        """Go where the surroundings go."""
+        assert start.covariance is not None
+        scale = scale_of(start.warp)
+        own = start.covariance + (_CARRIED_SIGMA * scale) ** 2 * np.eye(2)
+        self._move_to(picture, start.warp, own)
+        self._carried_for += 1
+        pixel = Pixel(*map(float, start.warp[:, 2]))
+        sigma = _DOUBTED * sigma_of(own + fit.inherited)
+        reason = "it looks different from what was tapped"
+        return Track(TrackStatus.UNSURE, reason, pixel, sigma, scale, fit.score)
+
+    def _move_to(self, picture: Gray, warp: Warp, own: FloatArray) -> None:
+        self._warp, self._own, self._picture, self._lost_for = warp, own, picture, 0
+        self._points = self._corners()
+
+    def _doubt(self, fit: Fit) -> str:
         if not Pixel(*map(float, fit.warp[:, 2])).is_inside(self._size):
             return "it is at the edge of the picture"
         if self._must_prove:
             return "it was found again and must be seen once more"
         if not _is_good(fit):
             return "it looks different from what was tapped"
-        if sigma > _UNSURE_SIGMA * max(1.0, scale_of(fit.warp)):
-            return f"its place is known to {sigma:.0f} px only"
         return ""
-
-    def _odd_motion(self, fit: Fit, before: Warp, motion: Motion | None) -> str:
-        if motion is None:
-            return ""
-        expected = chained(motion.now_from_before, before)[:, 2]
-        apart = float(np.hypot(*(fit.warp[:, 2] - expected)))
-        limit = _APART_FROM_SURROUNDINGS * max(1.0, scale_of(fit.warp))
-        return "it moves apart from its surroundings" if apart > limit else ""
 
     def _learn(self, picture: Gray, fit: Fit) -> None:
         """Learn which samples move with the place; take a new look where none is near in size."""
@@ -233,7 +277,8 @@ class PatchTracker:
             self._looks = [*kept, later_look(picture, fit)]
 
     def _corners(self) -> Points:
-        radius = max(12.0, 1.6 * self._radius * min(scale_of(self._warp), 2.0))
+        radius = 1.6 * self._radius * min(scale_of(self._warp), 2.0)
+        radius = min(max(radius, _LEAST_AROUND), _MOST_AROUND)
         return corners_near(self._picture, float(self._warp[0, 2]), float(self._warp[1, 2]), radius)
 
 
@@ -249,6 +294,12 @@ def _is_within(band: Band | None, fit: Fit) -> bool:
     return band is None or band.holds(float(fit.warp[0, 2]), float(fit.warp[1, 2]), scale_of(fit.warp))
 
 
-def _with_band(fit: Fit | None, band: Band | None) -> Fit | None:
+def _with_band(fit: Fit, band: Band | None) -> Fit:
     expected = band.expected() if band is not None else None
-    return fit if fit is None or expected is None else fit.fused_with(*expected)
+    return fit if expected is None else fit.fused_with(*expected)
+
+
+def _vagueness(fit: Fit) -> str:
+    if fit.sigma > _UNSURE_SIGMA * max(1.0, scale_of(fit.warp)):
+        return f"its place is known to {fit.sigma:.0f} px only"
+    return ""
