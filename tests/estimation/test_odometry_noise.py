@@ -84,3 +84,12 @@ def test_driving_backwards_is_an_advance_and_no_turn():
 def test_noise_that_cannot_be_is_refused_by_name(bad):
     with pytest.raises(InputError, match="slip_per_sqrt_m"):
         OdometryNoise(slip_per_sqrt_m=bad)
+
+
+def test_errors_of_one_step_are_those_of_the_same_step_among_many():
+    steps = np.random.default_rng(5).uniform(-1.0, 1.0, size=(200, 3)) * [0.5, 0.5, 4.0]
+    steps[:5] = [[0, 0, 0], [0, 0, 0.3], [0.4, 0, 0], [-0.4, 0, 0], [-0.4, 0, 0.2]]
+    for noise in (OdometryNoise(), OdometryNoise.per_step(0.02)):
+        among_many = noise.step_errors(steps)
+        for step, expected in zip(steps, among_many, strict=True):
+            np.testing.assert_allclose(noise.step_errors(step[None])[0], expected, rtol=1e-9, atol=1e-14)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tapreach.estimation.motion_prior import CameraErrors
 from tapreach.estimation.small_rotations import backward_rotations, cross_matrices
 from tapreach.geometry.finite import FloatArray
 
@@ -66,31 +67,30 @@ class CameraMatrices:
         return np.asarray(shifted - forth @ errors[3:])
 
 
-def camera_matrices(nominal: FloatArray, by_normal: FloatArray, normals: FloatArray) -> CameraMatrices:
-    """Return the cameras for normals (m, k), given the nominal ones (n, 3, 4) and their errors (n, 6, k)."""
+def camera_matrices(nominal: FloatArray, errors: CameraErrors, normals: FloatArray) -> CameraMatrices:
+    """Return the cameras for normals (m, k), given the nominal ones (n, 3, 4) and their errors."""
     count, views = len(normals), len(nominal)
-    into_view = nominal[:, :, :3]
-    if by_normal.shape[2] == 0 or not normals.any():
-        return _nominal_cameras(nominal, by_normal, count)
-    errors = (normals @ by_normal.reshape(6 * views, -1).T).reshape(count, views, 6)
-    back, slopes = backward_rotations(errors[..., 3:])
-    first, ahead = None, nominal
-    if by_normal[0].any():
-        shift, forth = errors[:, 0, :3], np.swapaxes(back[:, 0], -1, -2)
-        first = shift, forth
-        ahead = nominal @ _as_poses(shift, forth)[:, None]
+    if np.count_nonzero(normals) == 0:
+        return _nominal_cameras(nominal, errors, count)
+    moved = (normals @ errors.stacked).reshape(count, views, 6)
+    back, slopes = backward_rotations(moved[..., 3:])
+    first = None
+    if errors.moves_the_first:
+        first = moved[:, 0, :3], back[:, 0].mT
+        ahead = nominal @ _as_poses(*first)[:, None]
     else:
         ahead = np.array([nominal] * count)
-    ahead[..., 3] -= errors[..., :3]
-    return CameraMatrices(back @ ahead, back, slopes, into_view, by_normal, first)
+    ahead[..., 3] -= moved[..., :3]
+    return CameraMatrices(back @ ahead, back, slopes, nominal[:, :, :3], errors.by_normal, first)
 
 
-def _nominal_cameras(nominal: FloatArray, by_normal: FloatArray, count: int) -> CameraMatrices:
+def _nominal_cameras(nominal: FloatArray, errors: CameraErrors, count: int) -> CameraMatrices:
     """Return the cameras where no pose has an error."""
     still = np.empty((count, 1, 3, 3))
     still[:] = _IDENTITY
-    first = (np.zeros((count, 3)), still[:, 0]) if by_normal[0].any() else None
-    return CameraMatrices(np.array([nominal] * count), still, still, nominal[:, :, :3], by_normal, first)
+    first = (np.zeros((count, 3)), still[:, 0]) if errors.moves_the_first else None
+    matrices = np.array([nominal] * count)
+    return CameraMatrices(matrices, still, still, nominal[:, :, :3], errors.by_normal, first)
 
 
 def _as_poses(shifts: FloatArray, rotations: FloatArray) -> FloatArray:

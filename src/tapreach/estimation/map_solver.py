@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.lapack import dposv
 
 from tapreach.estimation.gauss_newton import descended
 from tapreach.estimation.gauss_newton_plain import settled
@@ -14,6 +15,7 @@ from tapreach.geometry.finite import FloatArray
 # Inverse depths to start from, in units of 1 over the baseline.
 _STARTS = np.array([0.0, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.6, 1.0, 2.0, 4.0])
 
+_IDENTITY = np.eye(3)
 _SHORT_BASELINE = 1e-6  # [m]; cameras nearer to each other than this show the same
 _CLEAR = 3.0  # sigmas from infinity, and of the squared residuals above their mean
 
@@ -73,9 +75,12 @@ def _at_crossing(model: ViewModel) -> Solution | None:
 
 def covariance_of(information: FloatArray) -> FloatArray:
     """Return the inverse; scaled first, as the unknowns of a near target differ by many powers of ten."""
-    scale = 1.0 / np.sqrt(np.diag(information))
-    scaling = np.outer(scale, scale)
-    return np.asarray(np.linalg.inv(information * scaling) * scaling, dtype=np.float64)
+    scale = 1.0 / np.sqrt(information.diagonal())
+    scaling = scale[:, None] * scale
+    _, inverse, failed = dposv(information * scaling, _IDENTITY)
+    if failed:  # rounding has made it indefinite
+        inverse = np.linalg.inv(information * scaling)
+    return np.asarray(inverse * scaling, dtype=np.float64)
 
 
 def inverse_depth_information(on_target: FloatArray) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -56,6 +56,16 @@ class CameraErrors:
     by_normal: FloatArray
     by_mount: FloatArray
     by_pixel: FloatArray | None = None
+
+    @cached_property
+    def moves_the_first(self) -> bool:
+        """True where the first camera has errors."""
+        return bool(self.by_normal[0].any())
+
+    @cached_property
+    def stacked(self) -> FloatArray:
+        """The errors of the poses per unit normal, transposed and one below the other (k, 6n)."""
+        return self.by_normal.reshape(-1, self.by_normal.shape[2]).T
 
 
 def camera_errors(

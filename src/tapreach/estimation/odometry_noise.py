@@ -3,11 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import TypeVar
 
 import numpy as np
 
 from tapreach.geometry.finite import FloatArray, not_negative
 from tapreach.geometry.planar_motion import PlanarPose
+
+_Amount = TypeVar("_Amount", float, FloatArray)
 
 
 @dataclass(frozen=True)
@@ -52,20 +55,10 @@ class OdometryNoise:
         heading with the way sideways that comes of it, sideways without a turn, and along the advance. They
         are a root of `step_covariance` in closed form, so that what cannot err is exactly zero.
         """
+        if len(steps) == 1:  # as between two taps: plain numbers are many times faster here
+            return self._errors_of_step(*steps[0].tolist())[None]
         (first, last), advance = _split(steps)
-        distance = np.abs(advance)
-        before = _variances(np.abs(first), self.turn_per_sqrt_rad, self.turn_fraction)
-        after = _variances(np.abs(last), self.turn_per_sqrt_rad, self.turn_fraction)
-        drift = self.turn_per_sqrt_m**2 * distance
-        turned = before + after
-        heading = turned + drift
-        shares = 1.0 / np.maximum(heading, 1e-300)  # without any turning there is nothing to share
-        # Turns before the advance swing its end by all of it, a drift on the way by half.
-        swing = advance * (before + 0.5 * drift) * shares
-        swing_left = (before * after + 0.25 * turned * drift) * shares
-        # A heading that drifts on the way also leaves a twelfth of its square in the sideways error.
-        sideways = advance * advance * (swing_left + drift / 12.0) + self.slip_per_sqrt_m**2 * distance
-        along = _variances(distance, self.advance_per_sqrt_m, self.advance_fraction)
+        heading, swing, sideways, along = self._spreads(first, last, advance)
         in_step = np.zeros((len(steps), 3, 5))  # of the frame that looks along the advance
         in_step[:, 2, 2], in_step[:, 1, 3], in_step[:, 0, 4] = np.sqrt((heading, sideways, along))
         in_step[:, 1, 2] = swing * in_step[:, 2, 2]
@@ -74,9 +67,40 @@ class OdometryNoise:
         in_step[:, 2, 1] = self.turn_scale * (first + last)
         return np.asarray(_turned(last) @ in_step)
 
+    def _errors_of_step(self, x: float, y: float, turn: float) -> FloatArray:
+        """Return `step_errors` (3, 5) of a single step."""
+        first, last, advance = _split_step(x, y, turn)
+        heading, swing, sideways, along = self._spreads(first, last, advance)
+        heading, sideways, along = math.sqrt(heading), math.sqrt(sideways), math.sqrt(along)
+        scaled, swung = self.advance_scale * advance, self.turn_scale * first * advance
+        c, s = math.cos(last), math.sin(last)
+        return np.array(
+            [
+                [c * scaled, s * swung, s * swing * heading, s * sideways, c * along],
+                [-s * scaled, c * swung, c * swing * heading, c * sideways, -s * along],
+                [0.0, self.turn_scale * (first + last), heading, 0.0, 0.0],
+            ]
+        )
 
-def _variances(amounts: FloatArray, per_sqrt: float, fraction: float) -> FloatArray:
-    return np.asarray(amounts * (per_sqrt**2 + fraction**2 * amounts))
+    def _spreads(self, first: _Amount, last: _Amount, advance: _Amount) -> tuple[_Amount, ...]:
+        """Return variance of the heading, way sideways per error in it, other variance sideways and along."""
+        distance = abs(advance)
+        before = _variance(abs(first), self.turn_per_sqrt_rad, self.turn_fraction)
+        after = _variance(abs(last), self.turn_per_sqrt_rad, self.turn_fraction)
+        drift = self.turn_per_sqrt_m**2 * distance
+        turned = before + after
+        heading = turned + drift
+        shares = 1.0 / (heading + 1e-300)  # without any turning there is nothing to share
+        # Turns before the advance swing its end by all of it, a drift on the way by half.
+        swing = advance * (before + 0.5 * drift) * shares
+        swing_left = (before * after + 0.25 * turned * drift) * shares
+        # A heading that drifts on the way also leaves a twelfth of its square in the sideways error.
+        sideways = advance * advance * (swing_left + drift / 12.0) + self.slip_per_sqrt_m**2 * distance
+        return heading, swing, sideways, _variance(distance, self.advance_per_sqrt_m, self.advance_fraction)
+
+
+def _variance(amount: _Amount, per_sqrt: float, fraction: float) -> _Amount:
+    return amount * (per_sqrt**2 + fraction**2 * amount)
 
 
 def _turned(turns: FloatArray) -> FloatArray:
@@ -87,6 +111,16 @@ def _turned(turns: FloatArray) -> FloatArray:
     rotations[:, 1, 0] = -rotations[:, 0, 1]
     rotations[:, 2, 2] = 1.0
     return rotations
+
+
+def _split_step(x: float, y: float, turn: float) -> tuple[float, float, float]:
+    """Return a step as first turn, last turn and advance; it goes backwards where that turns less in all."""
+    ahead = math.atan2(y, x)
+    back = ahead - math.copysign(math.pi, ahead)
+    after_ahead, after_back = math.remainder(turn - ahead, math.tau), math.remainder(turn - back, math.tau)
+    if abs(back) + abs(after_back) < abs(ahead) + abs(after_ahead):
+        return back, after_back, -math.hypot(x, y)
+    return ahead, after_ahead, math.hypot(x, y)
 
 
 def _split(steps: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -133,9 +167,10 @@ def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     backward = _inverses(onward)
     errors = np.zeros((count + 1, 3, 2 + 3 * count))
     errors[1:, :, :2] = onward @ np.cumsum(backward @ own[..., :2], axis=0)
-    by_step = onward[:, None] @ (backward @ own[..., 2:])
-    by_step *= np.tri(count)[:, :, None, None]  # a step moves no pose before it
-    errors[1:, :, 2:] = np.swapaxes(by_step, 1, 2).reshape(count, 3, 3 * count)
+    in_start = (backward @ own[..., 2:]).swapaxes(0, 1).reshape(3, 3 * count)
+    by_step = (onward.reshape(3 * count, 3) @ in_start).reshape(count, 3, 3 * count)
+    is_before = np.tri(count).repeat(3, axis=1)[:, None]  # a step moves no pose before it
+    np.multiply(by_step, is_before, out=errors[1:, :, 2:])
     return errors
 
 

@@ -12,7 +12,11 @@ from tapreach.geometry.finite import FloatArray
 _SERIES_UP_TO = 0.25  # squared angle [rad²]; there seven terms are exact to rounding
 _POWERS = np.arange(7)
 # Columns: sin(t)/t, (1 - cos t)/t², (t - sin t)/t³ as series in t².
-_SERIES = np.array([[(-1.0) ** i / math.factorial(2 * i + offset) for offset in (1, 2, 3)] for i in _POWERS])
+_TERMS = np.array([[(-1.0) ** i / math.factorial(2 * i + offset) for offset in (1, 2, 3)] for i in _POWERS])
+# How much of identity, cross product and its square is in each of the two matrices, from those three.
+_ONES = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+_SHARES = np.array([[0.0, -1, 0, 0, 0, 0], [0, 0, 1, 0, -1, 0], [0, 0, 0, 0, 0, 1]])
+_SERIES = _TERMS @ _SHARES + np.outer(_POWERS == 0, _ONES)
 # v @ _CROSS is the matrix of the cross product with v, row by row.
 _CROSS = np.zeros((3, 9))
 _CROSS[0, 5], _CROSS[0, 7], _CROSS[1, 2], _CROSS[1, 6], _CROSS[2, 1], _CROSS[2, 3] = -1, 1, 1, -1, -1, 1
@@ -26,22 +30,23 @@ def cross_matrices(vectors: FloatArray) -> FloatArray:
 
 def backward_rotations(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return exp(-turn) and the right Jacobian of exp at turn, (..., 3, 3) each, for turns (..., 3) [rad]."""
-    cross = cross_matrices(turns)
-    squared = cross @ cross
-    factors = _coefficients(np.add.reduce(turns * turns, axis=-1))[..., None, None]
-    sine, cosine, third = factors[..., 0, :, :], factors[..., 1, :, :], factors[..., 2, :, :]
-    back = _IDENTITY - sine * cross + cosine * squared
-    return back, _IDENTITY - cosine * cross + third * squared
+    parts = np.empty((*turns.shape[:-1], 3, 3, 3))
+    parts[..., 0, :, :] = _IDENTITY
+    parts[..., 1, :, :] = cross = cross_matrices(turns)
+    np.matmul(cross, cross, out=parts[..., 2, :, :])
+    shares = _shares((turns * turns).sum(axis=-1)).reshape(*turns.shape[:-1], 2, 3)
+    both = (shares @ parts.reshape(*turns.shape[:-1], 3, 9)).reshape(*turns.shape[:-1], 2, 3, 3)
+    return both[..., 0, :, :], both[..., 1, :, :]
 
 
-def _coefficients(squared_angles: FloatArray) -> FloatArray:
-    """Return the factors (..., 3) of the two matrices' terms."""
+def _shares(squared_angles: FloatArray) -> FloatArray:
+    """Return the factors (..., 6) of the two matrices' three parts."""
     if squared_angles.max(initial=0.0) < _SERIES_UP_TO:
         return np.asarray(squared_angles[..., None] ** _POWERS @ _SERIES)
     small = squared_angles < _SERIES_UP_TO
-    series = np.where(small, squared_angles, 0.0)[..., None] ** _POWERS @ _SERIES
+    series = np.where(small, squared_angles, 0.0)[..., None] ** _POWERS @ _TERMS
     angle = np.sqrt(np.where(small, 1.0, squared_angles))
     closed = np.stack(
         [np.sin(angle) / angle, (1.0 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3], axis=-1
     )
-    return np.where(small[..., None], series, closed)
+    return np.asarray(np.where(small[..., None], series, closed) @ _SHARES + _ONES)

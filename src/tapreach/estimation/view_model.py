@@ -26,11 +26,12 @@ from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.lens import NO_DISTORTION, distortion_jacobian
 
-_TARGET_COLUMNS = [0, 1, 3]  # of a projection matrix: those of a, b and rho
+_TARGET_COLUMNS = np.array([0, 1, 3])  # of a projection matrix: those of a, b and rho
 _IN_FRONT = 1e-9  # least third homogeneous coordinate of a target before a camera
-_SEEN = (
-    0.01  # ... and least share of its distance from the axis: nearer to the camera's plane no lens sees it
-)
+_SEEN = 0.01  # and least share of its distance from the axis: nearer to the camera's plane no lens sees it
+# A point @ _ROOM is what it has beyond that share to the right, left, below and above.
+_ROOM = np.array([[-_SEEN, _SEEN, 0.0, 0.0], [0.0, 0.0, -_SEEN, _SEEN], [1.0, 1.0, 1.0, 1.0]])
+_ONTO_PLANE, _DEPTH = np.eye(2, 3), np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class ViewModel:
     @cached_property
     def baseline(self) -> float:
         """The greatest distance between two of the cameras used [m]."""
-        used = self.positions[self.is_used]
+        used = self.positions if self.is_used.all() else self.positions[self.is_used]
         between = used[:, None, :] - used
         return math.sqrt(float((between * between).sum(axis=2).max()))
 
@@ -85,27 +86,25 @@ class ViewModel:
 
     def cameras(self, x: FloatArray) -> CameraMatrices:
         """Return the cameras that the pose errors in x (m, 3 + k) make of the nominal ones."""
-        return camera_matrices(self.nominal, self.errors.by_normal, x[:, 3:])
+        return camera_matrices(self.nominal, self.errors, x[:, 3:])
 
     def linearised(self, x: FloatArray) -> Linearised:
         """Return residuals over sigma at x (m, 3 + k) and their derivatives, 0 for views left out."""
         cameras = self.cameras(x)
         homogeneous = homogeneous_points(x)
         points = (cameras.matrices @ homogeneous[:, None, :, None])[..., 0]
-        depths = points[..., 2]
-        is_before = _is_before(points)
-        if is_before.all():
+        depths, room = points[..., 2], _room(points)
+        if room.min() > _IN_FRONT:
             is_in_front, safe = np.ones(len(x), dtype=bool), depths
         else:
+            is_before = room > _IN_FRONT
             is_in_front = np.all(is_before | ~self.is_used, axis=1)
             safe = np.where(is_before & self.is_used, depths, 1.0)
         projected = points[..., :2] / safe[..., None]
         weights = self._used_weights / safe[..., None, None]
-        slopes = np.empty((*weights.shape[:-1], 3))
-        slopes[..., :2] = weights
-        np.matmul(weights, -projected[..., None], out=slopes[..., 2:])
+        slopes = weights @ (_ONTO_PLANE - projected[..., None] * _DEPTH)
         residuals = (self._used_weights @ (projected - self.measured)[..., None])[..., 0]
-        by_target = slopes @ cameras.matrices[..., _TARGET_COLUMNS]
+        by_target = slopes @ cameras.matrices.take(_TARGET_COLUMNS, axis=-1)
         by_errors = cameras.by_normals(slopes, points, homogeneous)
         if self._by_picture is not None:
             residuals += (self._by_picture @ x[:, None, 3:, None])[..., 0]
@@ -143,7 +142,7 @@ class ViewModel:
         """Return the squared residuals over sigma (m,) of (a, b, rho) (m, 3); infinite behind a view used."""
         homogeneous = homogeneous_points(starts)
         points = (self.nominal @ homogeneous[:, None, :, None])[..., 0]
-        is_before = _is_before(points)
+        is_before = _room(points) > _IN_FRONT
         is_in_front = np.all(is_before | ~self.is_used, axis=1)
         projected = points[..., :2] / np.where(is_before, points[..., 2], 1.0)[..., None]
         residuals = self._used_weights @ (projected - self.measured)[..., None]
@@ -180,23 +179,20 @@ class ViewModel:
         ahead = self.nominal[:, 2:]
         rows = (self._used_weights @ (self.nominal[:, :2] - self.measured[:, :, None] * ahead)).reshape(-1, 4)
         products = rows.T @ rows
-        known = products[_TARGET_COLUMNS]
-        _, solved, failed = dposv(known[:, _TARGET_COLUMNS], -known[:, 2])
+        known = products.take(_TARGET_COLUMNS, axis=0)
+        _, solved, failed = dposv(known.take(_TARGET_COLUMNS, axis=1), -known[:, 2])
         if failed:
             return None
-        x = np.zeros(self.unknowns)
-        x[:3] = solved
-        return x
+        return np.concatenate([solved, np.zeros(self.unknowns - 3)])
 
     @cached_property
     def _used_weights(self) -> FloatArray:
         return self.weights if self.is_used.all() else self.weights * self.is_used[:, None, None]
 
 
-def _is_before(points: FloatArray) -> npt.NDArray[np.bool_]:
-    """Tell which homogeneous points (..., 3) a camera can see before it; at its plane slopes overflow."""
-    off_axis = np.maximum.reduce(np.abs(points[..., :2]), axis=-1)
-    return np.asarray(points[..., 2] > np.maximum(_IN_FRONT, _SEEN * off_axis))
+def _room(points: FloatArray) -> FloatArray:
+    """Return how far homogeneous points (..., 3) are before where a camera can see; there slopes overflow."""
+    return np.asarray((points @ _ROOM).min(axis=-1))
 
 
 def homogeneous_points(x: FloatArray) -> FloatArray:
