@@ -93,3 +93,10 @@ def test_errors_of_one_step_are_those_of_the_same_step_among_many():
         among_many = noise.step_errors(steps)
         for step, expected in zip(steps, among_many, strict=True):
             np.testing.assert_allclose(noise.step_errors(step[None])[0], expected, rtol=1e-9, atol=1e-14)
+
+
+def test_creep_moves_a_base_that_turns_and_leaves_one_that_only_drives():
+    noise = OdometryNoise(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, creep_per_rad=0.004)
+    turned = noise.step_covariance(PlanarPose(0.0, 0.0, 0.5))
+    assert np.allclose(turned, np.diag([0.002**2, 0.002**2, 0.0]))
+    assert np.allclose(noise.step_covariance(PlanarPose(0.4, 0.0, 0.0)), 0.0)

@@ -30,6 +30,7 @@ class OdometryNoise:
     turn_fraction: float = 0.0  # of each turn
     advance_scale: float = 0.01  # of all advances together
     turn_scale: float = 0.01  # of all turns together
+    creep_per_rad: float = 0.0  # [m/rad], ahead and sideways while turning: no base turns about one point
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -96,7 +97,9 @@ class OdometryNoise:
         swing_left = (before * after + 0.25 * turned * drift) * shares
         # A heading that drifts on the way also leaves a twelfth of its square in the sideways error.
         sideways = advance * advance * (swing_left + drift / 12.0) + self.slip_per_sqrt_m**2 * distance
-        return heading, swing, sideways, _variance(distance, self.advance_per_sqrt_m, self.advance_fraction)
+        along = _variance(distance, self.advance_per_sqrt_m, self.advance_fraction)
+        crept = (self.creep_per_rad * (first + last)) ** 2
+        return heading, swing, sideways + crept, along + crept
 
 
 def _variance(amount: _Amount, per_sqrt: float, fraction: float) -> _Amount:

@@ -96,6 +96,9 @@ class BaseSection(Section):
     sideways_sigma_per_sqrt_m: Positive = Field(
         0.005, description="sliding sideways in an advance: one sigma after 1 m, growing with the root [m]"
     )
+    creep_sigma_per_rad: float = Field(
+        0.005, ge=0, description="how far it moves ahead or sideways while it turns on the spot [m/rad]"
+    )
 
 
 class ArmPoseSection(Section):

@@ -17,6 +17,7 @@ def odometry_noise(description: RobotDescription) -> OdometryNoise:
         slip_per_sqrt_m=base.sideways_sigma_per_sqrt_m,
         advance_scale=base.distance_sigma,
         turn_scale=base.turn_sigma,
+        creep_per_rad=base.creep_sigma_per_rad,
     )
 
 
