@@ -2,6 +2,7 @@
 
 import asyncio
 import multiprocessing
+import os
 from collections.abc import AsyncIterator
 from concurrent.futures import ProcessPoolExecutor
 
@@ -13,6 +14,8 @@ from tapreach.robot.clock import SECOND, Clock, MonotonicClock
 
 _TAPS_PER_PROCESS = 12
 """A process is replaced after so many: what drawing leaves behind in it goes with it."""
+_ONE_THREAD = "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"
+"""Small matrices are slower on many threads, much slower where each process wants them."""
 
 
 async def run_taps(plan: LocatePlan, clock: Clock) -> list[Outcome]:
@@ -41,6 +44,8 @@ async def _in_turn(
 async def _spread(
     plan: LocatePlan, numbers: list[int], clock: Clock, until_ns: int
 ) -> AsyncIterator[list[Outcome]]:
+    for name in _ONE_THREAD:
+        os.environ.setdefault(name, "1")
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(plan.jobs, spawn, max_tasks_per_child=_TAPS_PER_PROCESS) as pool:
         loop = asyncio.get_running_loop()
