@@ -22,9 +22,9 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import perturbed
 
 _PLANAR_ROWS = [0, 1, 5]
-SEEN_WRONG = np.array([0.002, 0.0, 0.0, 0.005, 0.005, 0.0])
+SEEN_WRONG = np.array([0.0, 0.0, 0.0, 0.005, 0.005, 0.0])
 """One sigma of what the pictures of all steps have wrong in common, as an error of the mount that is not
-there [m, rad]: their direction of travel is drawn to where the near and stretching floor is. Measured in
+there [rad]: their direction of travel is drawn to where the near and stretching floor is. Measured in
 rendered rooms.
 """
 
