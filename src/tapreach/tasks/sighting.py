@@ -60,13 +60,13 @@ def observation_of(
     sighting: Sighting, description: RobotDescription, base_from_camera: RigidTransform | None = None
 ) -> Observation:
     """Return it as the estimator wants it; base_from_camera: where known better than by the robot's file."""
-    mount = description.camera.mount.base_from_camera() if base_from_camera is None else base_from_camera
+    lens, mount, _ = _optics(description.camera)
     return Observation(
         sighting.pixel,
         sighting.sigma,
-        description.camera.model(),
+        lens,
         sighting.world_from_base.to_rigid(),
-        mount,
+        mount if base_from_camera is None else base_from_camera,
     )
 
 
@@ -79,7 +79,7 @@ def rays_of(sightings: Sequence[Sighting], description: RobotDescription) -> tup
     """Return the lines of sight in the world, in the order of the sightings."""
     if not sightings:
         return ()
-    camera, base_from_camera = _optics(description.camera)
+    camera, _, base_from_camera = _optics(description.camera)
     poses = [sighting.world_from_base for sighting in sightings]
     pixels = np.array([(sighting.pixel.u, sighting.pixel.v) for sighting in sightings])
     directions = _turned(camera.unproject(pixels) @ base_from_camera[:3, :3].T, poses)
@@ -89,9 +89,10 @@ def rays_of(sightings: Sequence[Sighting], description: RobotDescription) -> tup
 
 
 @lru_cache(maxsize=4)
-def _optics(camera: CameraSection) -> tuple[Camera, FloatArray]:
-    """Return lens and base_from_camera (4, 4): asked for many times a frame, and always the same."""
-    return camera.model(), pose_to_matrix(camera.mount.base_from_camera())
+def _optics(camera: CameraSection) -> tuple[Camera, RigidTransform, FloatArray]:
+    """Return lens and base_from_camera, also as (4, 4): asked for many times a frame, and always the same."""
+    mount = camera.mount.base_from_camera()
+    return camera.model(), mount, pose_to_matrix(mount)
 
 
 def _turned(vectors: FloatArray, poses: Sequence[PlanarPose]) -> FloatArray:
