@@ -9,6 +9,7 @@ from tapreach.geometry.finite import FloatArray
 _ITERATIONS = 60
 _LEAST_DAMPING = 1e-12  # keeps an unknown about which nothing is known where it is
 _FIRST_DAMPING = 1e-5  # after a refused step; below it a smaller one is none
+_LONGEST = 1e6  # of a step in any unknown; nothing real is that far, and longer ones end in overflow
 
 
 def descended(
@@ -64,7 +65,8 @@ def _damped_steps(now: Linearised, free: int, damping: FloatArray) -> tuple[Floa
     steps[:, 3:] = -inverse * (_times(np.swapaxes(now.by_errors, 1, 2), weighted) + normals)
     moved = _times(by_target, steps[:, :free]) + _times(now.by_errors, steps[:, 3:])
     promised = -np.sum(now.residuals * moved, axis=1) - np.sum(normals * steps[:, 3:], axis=1)
-    return steps, promised
+    shortened = 1.0 / np.maximum(1.0, np.abs(steps).max(axis=1) / _LONGEST)
+    return shortened[:, None] * steps, promised
 
 
 def _lowered(damping: FloatArray) -> FloatArray:

@@ -59,7 +59,10 @@ class Linearised:
     @cached_property
     def factor(self) -> FloatArray:
         """The lower Cholesky factor of C (2n, 2n) of a single point; C ≥ I is far from singular."""
-        return np.asarray(dpotrf(self.noise()[0], lower=1)[0])
+        by_errors = self.by_errors[0]
+        noise = by_errors @ by_errors.T
+        noise.ravel()[:: len(noise) + 1] += 1.0
+        return np.asarray(dpotrf(noise, lower=1)[0])
 
     @cached_property
     def pull(self) -> FloatArray:

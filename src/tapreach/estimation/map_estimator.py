@@ -80,7 +80,6 @@ def _answer(
     advice: str,
 ) -> PointEstimate:
     status, reason = verdict(model, solution, depth)
-    rejected = tuple(int(i) for i in np.flatnonzero(~model.is_used))
     residuals_px = _residuals_px(model, solution)
     if status is Status.DEGENERATE or math.isinf(depth.sd):  # what contradicts itself may be singular too
         return _unknown(status, reason, model, residuals_px)
@@ -102,13 +101,13 @@ def _answer(
         range=depth.slant / depth.inverse_depth if is_determined else None,
         range_interval_95=None if status is Status.BEHIND else depth.range_interval(),
         residuals_px=residuals_px,
-        rejected_views=rejected,
+        rejected_views=model.left_out,
         in_frames=in_frames,
     )
 
 
 def _residuals_px(model: ViewModel, solution: Solution) -> FloatArray:
-    if np.all(model.is_used) and model.whitening is None:
+    if model.used == model.views and model.whitening is None:
         return solution.views.residuals.reshape(-1, 2) * model.sigmas[:, None]
     return model.residuals_px(solution.x)
 
@@ -128,7 +127,7 @@ def _unknown(
         range=None,
         range_interval_95=None,
         residuals_px=residuals_px if residuals_px is not None else np.zeros((model.views, 2)),
-        rejected_views=tuple(int(i) for i in np.flatnonzero(~model.is_used)),
+        rejected_views=model.left_out,
         in_frames=None,
     )
 

@@ -65,7 +65,7 @@ def _at_crossing(model: ViewModel) -> Solution | None:
     views = settled(model, start) if start is not None and start[2] > 0.0 else None
     if views is None:
         return None
-    freedom = max(2 * int(model.is_used.sum()) - 3, 1)
+    freedom = max(2 * model.used - 3, 1)
     on_target, rho, cost = views.on_target()[0], float(views.x[0, 2]), float(views.costs[0])
     is_clear = rho > 0.0 and inverse_depth_information(on_target) * rho * rho > _CLEAR**2
     if not is_clear or cost > freedom + _CLEAR * math.sqrt(2.0 * freedom):

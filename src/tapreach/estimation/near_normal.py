@@ -54,9 +54,11 @@ class NearNormalPosterior:
 
     def _weights(self, inverse_depths: FloatArray) -> FloatArray:
         least, most = self.slant / self.farthest, self.slant / self.nearest
-        if not least < inverse_depths[-1] or not most > inverse_depths[0]:
+        lowest, highest = float(inverse_depths[0]), float(inverse_depths[-1])
+        if not least < highest or not most > lowest:
             return _NORMAL
         densities = _NORMAL / np.maximum(inverse_depths, 0.01 * self.inverse_depth)
-        if least > inverse_depths[0] or most < inverse_depths[-1]:
-            densities = np.where((inverse_depths >= least) & (inverse_depths <= most), densities, 0.0)
+        if least <= lowest and highest <= most:
+            return np.asarray(densities)
+        densities = np.where((inverse_depths >= least) & (inverse_depths <= most), densities, 0.0)
         return np.asarray(densities if densities.any() else _NORMAL)

@@ -27,7 +27,7 @@ def solve_without_outliers(
     are always kept, and those `trusted`. None where no depth puts the target before all cameras.
     """
     solution = solve(model)
-    while solution is not None and (spare := int(model.is_used.sum()) - _FEWEST_TO_BLAME + 1) > 0:
+    while solution is not None and (spare := model.used - _FEWEST_TO_BLAME + 1) > 0:
         suspects = _suspects(model, solution, trusted)[: min(spare, 2)]
         if not suspects:
             break
@@ -59,10 +59,8 @@ def _gains_and_limits(model: ViewModel, solution: Solution) -> tuple[FloatArray,
     """
     views = solution.views
     residuals = views.residuals[0]
-    precision = views.precision
-    pull = precision @ views.by_target[0]
-    damped = solution.on_target + 1e-12 * np.diag(np.diag(solution.on_target))
-    remaining = precision - pull @ np.linalg.solve(damped, pull.T)
+    damped = solution.on_target + 1e-12 * np.diag(solution.on_target.diagonal())
+    remaining = views.precision - views.pull @ np.linalg.solve(damped, views.pull.T)
     if model.whitening is not None:  # a slip shifts one tap, and so what is expected of the next
         remaining = model.whitening.T @ remaining @ model.whitening
         residuals = model.whitening.T @ residuals

@@ -18,14 +18,14 @@ _SHORT_BASELINE = 1e-6  # [m]; a camera that moved less has only turned
 
 def verdict(model: ViewModel, solution: Solution, depth: DepthKnowledge) -> tuple[Status, str]:
     """Return the status of a solution and its reason."""
-    freedom = 2 * int(model.is_used.sum()) - 3
+    freedom = 2 * model.used - 3
     is_contradictory = solution.cost > _heavy_tailed_limit(max(freedom, 1))
     diverging = is_contradictory or depth.inverse_depth < _DIVERGING * depth.sd
     if depth.inverse_depth < 0.0 and diverging:
         return Status.BEHIND, "the lines of sight diverge: they would meet behind the camera"
     if is_contradictory:
         return Status.INCONSISTENT, (
-            f"the {int(model.is_used.sum())} views contradict each other: squared residuals "
+            f"the {model.used} views contradict each other: squared residuals "
             f"{solution.cost:.0f} where about {freedom} is right; "
             f"was the same thing tapped, and did it stand still?"
         )

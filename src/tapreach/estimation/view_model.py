@@ -57,6 +57,16 @@ class ViewModel:
         """Number of views n."""
         return len(self.measured)
 
+    @cached_property
+    def used(self) -> int:
+        """Number of views used."""
+        return int(np.count_nonzero(self.is_used))
+
+    @property
+    def left_out(self) -> tuple[int, ...]:
+        """Numbers of the views not used."""
+        return tuple(np.flatnonzero(~self.is_used).tolist()) if self.used < self.views else ()
+
     @property
     def unknowns(self) -> int:
         """Length of x, 3 + k."""
@@ -70,7 +80,7 @@ class ViewModel:
     @cached_property
     def baseline(self) -> float:
         """The greatest distance between two of the cameras used [m]."""
-        used = self.positions if self.is_used.all() else self.positions[self.is_used]
+        used = self.positions if self.used == self.views else self.positions[self.is_used]
         between = used[:, None, :] - used
         return math.sqrt(float((between * between).sum(axis=2).max()))
 
@@ -187,7 +197,7 @@ class ViewModel:
 
     @cached_property
     def _used_weights(self) -> FloatArray:
-        return self.weights if self.is_used.all() else self.weights * self.is_used[:, None, None]
+        return self.weights if self.used == self.views else self.weights * self.is_used[:, None, None]
 
 
 def _room(points: FloatArray) -> FloatArray:
