@@ -17,6 +17,7 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize, Pixel, require_inside
 from tapreach.vision.band import Band
 from tapreach.vision.carried import Start, carried, conflict, joined, sigma_of
+from tapreach.vision.core import looseness
 from tapreach.vision.flow import Motion, Points, corners_near, motions_between
 from tapreach.vision.image_io import Gray
 from tapreach.vision.look import Fit, Look, context_score, fit_look, later_look, tapped_look
@@ -49,6 +50,8 @@ _MOST_FITS = 3
 """So many looks are fitted in one picture, and one more to a place found again: it must not take long."""
 _DOUBTED = 2.0
 """The sigma of a doubtful place counts so many times."""
+_LOOSE_AT_ONCE, _ALL_LOOSE = 0.1, 0.3
+"""Share of a place's looseness that counts from the first; log of the change in size at which all does."""
 _LEAST_AROUND, _MOST_AROUND = 26.0, 60.0
 """Radius [px] around the place in which corners are followed."""
 
@@ -72,6 +75,7 @@ class PatchTracker:
         self._warp = warp_at(u, v)
         self._picture = picture
         self._own = np.zeros((2, 2))
+        self._loose = looseness(picture, u, v)
         self._points = self._corners()
         self._lost_for = self._carried_for = 0
         self._must_prove = False
@@ -220,12 +224,12 @@ class PatchTracker:
         fit = found if is_odd else joined(found, start)
         self._move_to(picture, fit.warp, fit.own)
         self._carried_for = 0
-        sigma = fit.sigma
+        sigma = self._sigma(fit.warp, fit.covariance)
         if sigma > _MOST_SIGMA * max(1.0, scale_of(fit.warp)):
             reason = f"its place would be known to {sigma:.0f} px only"
             return Track(TrackStatus.LOST, reason, None, 0.0, scale_of(fit.warp), fit.score)
         doubt = self._doubt(fit) or ("it moves apart from its surroundings" if is_odd else "")
-        reason = doubt or _vagueness(fit) or self.weakness
+        reason = doubt or _vagueness(sigma, fit.warp) or self.weakness
         if _is_good(fit) and reason in ("", self.weakness):
             self._learn(picture, fit)
         self._must_prove = False
@@ -250,9 +254,15 @@ class PatchTracker:
         self._move_to(picture, start.warp, own)
         self._carried_for += 1
         pixel = Pixel(*map(float, start.warp[:, 2]))
-        sigma = _DOUBTED * sigma_of(own + fit.inherited)
+        sigma = _DOUBTED * self._sigma(start.warp, own + fit.inherited)
         reason = "it looks different from what was tapped"
         return Track(TrackStatus.UNSURE, reason, pixel, sigma, scale, fit.score)
+
+    def _sigma(self, warp: Warp, covariance: FloatArray) -> float:
+        """Return one sigma [px] of a place found with `covariance` (2, 2) [px²]."""
+        seen_from_elsewhere = min(1.0, _LOOSE_AT_ONCE + abs(math.log(scale_of(warp))) / _ALL_LOOSE)
+        linear = seen_from_elsewhere * warp[:, :2]
+        return sigma_of(covariance + linear @ self._loose @ linear.T)
 
     def _move_to(self, picture: Gray, warp: Warp, own: FloatArray) -> None:
         self._warp, self._own, self._picture, self._lost_for = warp, own, picture, 0
@@ -299,7 +309,9 @@ def _with_band(fit: Fit, band: Band | None) -> Fit:
     return fit if expected is None else fit.fused_with(*expected)
 
 
-def _vagueness(fit: Fit) -> str:
-    if fit.sigma > _UNSURE_SIGMA * max(1.0, scale_of(fit.warp)):
-        return f"its place is known to {fit.sigma:.0f} px only"
-    return ""
+def _vagueness(sigma: float, warp: Warp) -> str:
+    return (
+        f"its place is known to {sigma:.0f} px only"
+        if sigma > _UNSURE_SIGMA * max(1.0, scale_of(warp))
+        else ""
+    )
