@@ -85,7 +85,7 @@ def test_further_moves_must_promise_and_keep() -> None:
     estimate = estimated(1.0)
     assert is_worthwhile(choice(0.9), None)
     assert is_worthwhile(choice(0.65 * estimate.relative_sd), estimate)
-    assert not is_worthwhile(choice(0.75 * estimate.relative_sd), estimate)
+    assert not is_worthwhile(choice(0.9 * estimate.relative_sd), estimate)
     assert has_helped(None, estimate)
     assert has_helped(estimate, replace(estimate, relative_sd=0.8 * estimate.relative_sd))
     assert not has_helped(estimate, replace(estimate, relative_sd=0.95 * estimate.relative_sd))

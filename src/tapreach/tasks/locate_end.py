@@ -6,7 +6,7 @@ from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.tasks.move_choice import Choice
 from tapreach.tasks.target import Target
 
-WORTHWHILE = 0.7
+WORTHWHILE = 0.85
 """A further move is made when it promises to bring the range's error below this share of what it is."""
 
 HELPED = 0.9
