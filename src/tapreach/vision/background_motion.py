@@ -150,6 +150,6 @@ def _moves_with_the_rest(first: Points, now: Points) -> NDArray[np.bool_]:
     try:
         _, inliers = cv2.findFundamentalMat(first, now, cv2.USAC_MAGSAC, _EPIPOLAR, 0.999, 300)
     except cv2.error:
-        # After a turn alone all of USAC may polish a model that it has not found; the older search never does.
+        # After a turn alone all of USAC may polish a model that it has not found; the older search does not.
         _, inliers = cv2.findFundamentalMat(first, now, cv2.FM_RANSAC, _EPIPOLAR, 0.999, 300)
     return np.zeros(len(first), np.bool_) if inliers is None else np.asarray(inliers.ravel() > 0)
