@@ -173,9 +173,11 @@ def thinned(
 ) -> list[Sighting]:
     """Return all `stops`, the keys among the `others`, and those of them whose pose lies apart from all
     kept, in the order of time.
+
+    Those whose way the background has seen come before the rest, the newest first: it saw the longest way.
     """
     kept = list(stops)
-    for sighting in sorted(others, key=lambda each: not each.is_key):
+    for sighting in sorted(others, key=lambda each: (not each.is_key, each.way is None, -each.captured_ns)):
         here = sighting.world_from_base
         if sighting.is_key or all(is_apart(each.world_from_base, here, distance, angle) for each in kept):
             kept.append(sighting)
