@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated
 
@@ -13,6 +14,15 @@ from tapreach.errors import InputError
 from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.point_estimate import PointEstimate
 from tapreach.geometry.finite import FloatArray
+
+_COMPUTED = (
+    "point_in_world",
+    "point_cov_in_world",
+    "point_in_base",
+    "point_cov_in_base",
+    "is_ellipsoid_fair",
+)
+"""What a result computes when it is asked."""
 
 
 def estimate(
@@ -52,9 +62,8 @@ def _read(file: str) -> str:
 
 def as_values(result: PointEstimate) -> dict[str, object]:
     """Return the result as plain values for JSON; infinity and what is not known become null."""
-    names = PointEstimate.__dataclass_fields__
-    values = {name: _plain(getattr(result, name)) for name in names}
-    return values | {"is_ellipsoid_fair": result.is_ellipsoid_fair}
+    names = [field.name for field in fields(PointEstimate) if field.name != "in_frames"]
+    return {name: _plain(getattr(result, name)) for name in (*names, *_COMPUTED)}
 
 
 def as_text(result: PointEstimate) -> str:
