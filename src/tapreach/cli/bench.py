@@ -31,6 +31,9 @@ Json = Annotated[
     Path | None, typer.Option("--json", help="where the result goes [default: out/bench/NAME.json]")
 ]
 Seed = Annotated[int, typer.Option(help="of all that is random")]
+FreshSeed = Annotated[
+    int | None, typer.Option("--seed", min=0, help="of all that is random [default: a fresh one]")
+]
 Seconds = Annotated[float, typer.Option(min=1.0, help="for each measurement")]
 
 
@@ -64,9 +67,7 @@ def accuracy(
     comparisons: Annotated[int, typer.Option(min=1, help="trials in each setting beside the peers")] = 100,
     part: Annotated[Chapter | None, typer.Option(help="run this one alone")] = None,
     jobs: Annotated[int, typer.Option(min=1, help="processes, but for what is timed")] = 1,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
-    ] = None,
+    seed: FreshSeed = None,
     plot: Annotated[Path | None, typer.Option(help="picture of every setting; needs matplotlib")] = None,
     json: Json = None,
 ) -> None:
@@ -74,11 +75,10 @@ def accuracy(
 
     About 15 minutes on an idle core; each chapter alone by --part. The seed makes a run again.
     """
-    used = secrets.randbits(32) if seed is None else seed
+    used = _told(seed)
     plan = AccuracyPlan(used, trials, motions, comparisons, jobs=jobs, plot=plot, chapter=part)
     if smoke:
         plan = smoke_plan(used, part)
-    Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: accuracy_bench.run_accuracy(plan, on_section, MonotonicClock()), json)
 
 
@@ -89,21 +89,18 @@ def locate(
     jobs: Annotated[int, typer.Option(min=1, help="processes")] = 1,
     minutes: Annotated[float, typer.Option(min=0.1, help="no tap is begun later than this")] = 90.0,
     keep: Annotated[Path | None, typer.Option(help="file of finished taps; goes on where it ends")] = None,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
-    ] = None,
+    seed: FreshSeed = None,
     plot: Annotated[Path | None, typer.Option(help="picture of every tap; needs matplotlib")] = None,
     failures: Annotated[Path | None, typer.Option(help="picture of the taps that went wrong (.jpg)")] = None,
     json: Json = None,
 ) -> None:
-    """One tap to a position in the rendered simulator, robot and all, against the truth. About 40 minutes."""
-    used = secrets.randbits(32) if seed is None else seed
+    """One tap to a position in the rendered simulator, robot and all, against the truth. An hour and more."""
+    used = _told(seed)
     plan = locate_plan.LocatePlan(
         used, taps, jobs=jobs, minutes=minutes, kept=keep, plot=plot, failures=failures
     )
     if smoke:
         plan = locate_plan.smoke_plan(used)
-    Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: locate_bench.run_locate(plan, on_section, MonotonicClock()), json)
 
 
@@ -113,17 +110,14 @@ def tracking(
     taps: Annotated[int, typer.Option(min=1, help="tapped points of each film")] = 12,
     random_scenes: Annotated[int, typer.Option(min=0, help="beside those that ship")] = 7,
     jobs: Annotated[int, typer.Option(min=1, help="processes that draw")] = 1,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
-    ] = None,
+    seed: FreshSeed = None,
     json: Json = None,
 ) -> None:
     """Tapped points followed through rendered films, against the truth and OpenCV. About 10 minutes."""
-    used = secrets.randbits(32) if seed is None else seed
+    used = _told(seed)
     plan = tracking_plan.full_plan(used, random_scenes, taps, jobs)
     if smoke:
         plan = tracking_plan.smoke_plan(used)
-    Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: tracking_bench.run_tracking(plan, on_section, MonotonicClock()), json)
 
 
@@ -131,15 +125,12 @@ def tracking(
 def online(
     smoke: Smoke = False,
     taps: Annotated[int, typer.Option(min=1, help="random ones, over all scenes")] = 12,
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="of all that is random [default: a fresh one]")
-    ] = None,
+    seed: FreshSeed = None,
     json: Json = None,
 ) -> None:
     """What each picture costs while locating, step by step, on one core. A few minutes."""
-    used = secrets.randbits(32) if seed is None else seed
+    used = _told(seed)
     plan = online_bench.OnlinePlan(used, 1 if smoke else taps, smoke)
-    Console().print(f"seed {used}", highlight=False)
     _run(lambda on_section: online_bench.run_online(plan, on_section, MonotonicClock()), json)
 
 
@@ -149,6 +140,13 @@ def document(docs: Annotated[Path, typer.Option(help="folder of the documents")]
     page = docs / "benchmarks.md"
     page.write_text(benchmarks_document(docs / "benchmarks"), encoding="utf-8")
     Console().print(f"wrote {page}", highlight=False)
+
+
+def _told(seed: int | None) -> int:
+    """Return the seed given or a fresh one, and print it: it makes the run again."""
+    used = secrets.randbits(32) if seed is None else seed
+    Console().print(f"seed {used}", highlight=False)
+    return used
 
 
 def _run(

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from tapreach.errors import InputError
 from tapreach.geometry.finite import FloatArray
 from tapreach.vision.background_corners import Box, halved, in_half, in_whole, spread_corners
-from tapreach.vision.flow import Points
+from tapreach.vision.flow import Points, carried
 from tapreach.vision.image_io import Gray
 
 _WINDOW = (15, 15)
@@ -105,35 +105,19 @@ def _poor(reason: str) -> BackgroundPairs:
     return BackgroundPairs(BackgroundQuality.POOR, reason, np.zeros((0, 2)), np.zeros((0, 2)))
 
 
-def _klt(
-    before: Gray, now: Gray, points: Points, guess: Points, levels: int, criteria: tuple[int, int, float]
-) -> tuple[Points, NDArray[np.bool_]]:
-    found, status, _ = cv2.calcOpticalFlowPyrLK(
-        before,
-        now,
-        points,
-        guess.astype(np.float32),
-        winSize=_WINDOW,
-        maxLevel=levels,
-        criteria=criteria,
-        flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
-    )
-    return np.asarray(found, dtype=np.float32), np.asarray(status.ravel() > 0)
-
-
 def _carried(before: Gray, now: Gray, places: Points, shift: Points) -> tuple[Points, NDArray[np.bool_]]:
     """Return where `places` (n, 2) of the whole picture have gone, seen in halved ones; and which hold."""
     start = in_half(places)
-    forth, is_found = _klt(before, now, start, start + shift / 2.0, _LEVELS, _CARRY)
-    back, is_back = _klt(now, before, forth, start, 1, _CARRY)
+    forth, is_found = carried(before, now, start, start + shift / 2.0, _WINDOW, _LEVELS, _CARRY)
+    back, is_back = carried(now, before, forth, start, _WINDOW, 1, _CARRY)
     is_kept = is_found & is_back & (np.linalg.norm(back - start, axis=1) < _FORTH_AND_BACK)
     return in_whole(forth), is_kept
 
 
 def _fitted(first: Gray, now: Gray, corners: Points, places: Points) -> tuple[Points, NDArray[np.bool_]]:
     """Return where the corners' first look lies now (n, 2), starting from `places`; and which hold."""
-    forth, is_found = _klt(first, now, corners, places, 0, _FIT)
-    back, is_back = _klt(now, first, forth, corners, 0, _FIT)
+    forth, is_found = carried(first, now, corners, places, _WINDOW, 0, _FIT)
+    back, is_back = carried(now, first, forth, corners, _WINDOW, 0, _FIT)
     is_kept = is_found & is_back & (np.linalg.norm(back - corners, axis=1) < _FIT_BACK)
     return forth, is_kept & (np.linalg.norm(forth - places, axis=1) < _FIT_REACH)
 

@@ -65,8 +65,9 @@ def motions_between(
     if len(points) < _LEAST_AGREEING:
         return ()
     start = points.reshape(-1, 1, 2)
-    forth = _follow(before, now, start, start + np.array(shift, dtype=np.float32))
-    back = _follow(now, before, forth[0], start.copy())
+    guess = start + np.array(shift, dtype=np.float32)
+    forth = carried(before, now, start, guess, _WINDOW, _LEVELS, _CRITERIA)
+    back = carried(now, before, forth[0], start, _WINDOW, _LEVELS, _CRITERIA)
     gap = np.linalg.norm(back[0] - start, axis=2).ravel()
     is_kept = forth[1] & back[1] & (gap < _FORTH_AND_BACK)
     left, gone = points[is_kept], forth[0].reshape(-1, 2)[is_kept]
@@ -89,18 +90,27 @@ def _disagreement(warp: Warp, before: Points, now: Points) -> FloatArray:
     return np.asarray((axes * np.maximum(values, 0.0)) @ axes.T)
 
 
-def _follow(before: Gray, now: Gray, points: Points, guess: Points) -> tuple[Points, NDArray[np.bool_]]:
+def carried(
+    before: Gray,
+    now: Gray,
+    points: Points,
+    guess: Points,
+    window: tuple[int, int],
+    levels: int,
+    criteria: tuple[int, int, float],
+) -> tuple[Points, NDArray[np.bool_]]:
+    """Return where `points` (n, 2) have gone by KLT, starting from `guess`; and (n,) which were found."""
     found, status, _ = cv2.calcOpticalFlowPyrLK(
         before,
         now,
         points,
         guess.astype(np.float32),
-        winSize=_WINDOW,
-        maxLevel=_LEVELS,
-        criteria=_CRITERIA,
+        winSize=window,
+        maxLevel=levels,
+        criteria=criteria,
         flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
     )
-    return np.asarray(found, dtype=np.float32), status.ravel() > 0
+    return np.asarray(found, dtype=np.float32), np.asarray(status.ravel() > 0)
 
 
 def _agreed(before: Points, now: Points) -> tuple[Warp, NDArray[np.bool_]] | None:
