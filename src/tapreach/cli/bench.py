@@ -73,7 +73,7 @@ def accuracy(
 ) -> None:
     """The estimator in simulation against its bound, its own regions, other libraries and the best move.
 
-    About 15 minutes on an idle core; each chapter alone by --part. The seed makes a run again.
+    A long run; each chapter alone by --part. The seed makes a run again.
     """
     used = _told(seed)
     plan = AccuracyPlan(used, trials, motions, comparisons, jobs=jobs, plot=plot, chapter=part)
@@ -113,7 +113,7 @@ def tracking(
     seed: FreshSeed = None,
     json: Json = None,
 ) -> None:
-    """Tapped points followed through rendered films, against the truth and OpenCV. About 10 minutes."""
+    """Tapped points followed through rendered films, against the truth and OpenCV. Many minutes."""
     used = _told(seed)
     plan = tracking_plan.full_plan(used, random_scenes, taps, jobs)
     if smoke:

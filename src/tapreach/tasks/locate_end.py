@@ -8,8 +8,8 @@ from tapreach.tasks.target import Target
 
 WORTHWHILE = 0.85
 """A further move is made when it promises to bring the range's error below this share of what it is."""
-
 HELPED = 0.9
+"""After a move that did not bring it below this share nothing more is tried."""
 
 
 class End(StrEnum):
