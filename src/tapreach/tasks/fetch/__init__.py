@@ -1,0 +1,1 @@
+"""Fetching: from one tap to the thing in the claw."""
