@@ -31,9 +31,11 @@ def arm_section(arm: Arm, outcomes: Sequence[Outcome], is_held: bool) -> Section
 
 
 def beside_section(outcomes: Sequence[Outcome]) -> Section:
-    """Return the table of every arm on the same taps."""
+    """Return the table of every arm on the same taps: those that all were run on."""
     arms = list(dict.fromkeys(outcome.arm for outcome in outcomes))
-    rows = tuple((arm, *cells([each for each in outcomes if each.arm == arm])) for arm in arms)
+    taps = set.intersection(*({each.tap for each in outcomes if each.arm == arm} for arm in arms))
+    shared = [outcome for outcome in outcomes if outcome.tap in taps]
+    rows = tuple((arm, *cells([each for each in shared if each.arm == arm])) for arm in arms)
     return Section(
         "Beside the paper's fixed move",
         "The same taps. Fixed move: the arm is brought to its pose, 12° and 20 cm as in the paper; our "

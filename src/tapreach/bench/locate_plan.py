@@ -24,8 +24,8 @@ class Arm(StrEnum):
 
 @dataclass(frozen=True)
 class LocatePlan:
-    """taps: each with every one of `arms`. jobs: processes. minutes: no tap is begun later than this.
-    rate_hz: pictures a second.
+    """taps: each with the first of `arms`, and the first `comparisons` of them with all. jobs: processes.
+    minutes: no tap is begun later than this. rate_hz: pictures a second.
 
     kept: file of the taps that are done, continued when it exists; None for none. plot, failures: files of
     the pictures, None for none.
@@ -33,6 +33,7 @@ class LocatePlan:
 
     seed: int
     taps: int = 200
+    comparisons: int = 60
     arms: tuple[Arm, ...] = tuple(Arm)
     jobs: int = 1
     minutes: float = 90.0
@@ -42,6 +43,10 @@ class LocatePlan:
     plot: Path | None = None
     failures: Path | None = None
 
+    def arms_of(self, tap: int) -> tuple[Arm, ...]:
+        """What is done about the tap with this number."""
+        return self.arms if tap < self.comparisons else self.arms[:1]
+
     @property
     def folder(self) -> Path | None:
         """Where the picture of each tap that went wrong is put."""
@@ -50,7 +55,7 @@ class LocatePlan:
 
 def smoke_plan(seed: int) -> LocatePlan:
     """A plan that only shows that everything works."""
-    return LocatePlan(seed, SMOKE_TAPS, (Arm.CHOSEN, Arm.FIXED), rate_hz=SMOKE_RATE_HZ, is_smoke=True)
+    return LocatePlan(seed, SMOKE_TAPS, arms=(Arm.CHOSEN, Arm.FIXED), rate_hz=SMOKE_RATE_HZ, is_smoke=True)
 
 
 def generator(seed: int, tap: int) -> np.random.Generator:

@@ -45,7 +45,7 @@ async def run_tap(plan: LocatePlan, number: int, clock: Clock) -> list[Outcome]:
     """
     stage = await draw_stage(plan.seed, number, plan.rate_hz)
     outcomes = []
-    for arm in plan.arms:
+    for arm in plan.arms_of(number):
         outcomes += await _run_arm(stage, arm, clock, plan.folder)
     return outcomes
 

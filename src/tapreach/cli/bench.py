@@ -86,6 +86,7 @@ def accuracy(
 def locate(
     smoke: Smoke = False,
     taps: Annotated[int, typer.Option(min=1, help="random ones, over all scenes")] = 200,
+    comparisons: Annotated[int, typer.Option(min=1, help="so many of them also in other ways")] = 60,
     jobs: Annotated[int, typer.Option(min=1, help="processes")] = 1,
     minutes: Annotated[float, typer.Option(min=0.1, help="no tap is begun later than this")] = 90.0,
     keep: Annotated[Path | None, typer.Option(help="file of finished taps; goes on where it ends")] = None,
@@ -97,7 +98,7 @@ def locate(
     """One tap to a position in the rendered simulator, robot and all, against the truth. An hour and more."""
     used = _told(seed)
     plan = locate_plan.LocatePlan(
-        used, taps, jobs=jobs, minutes=minutes, kept=keep, plot=plot, failures=failures
+        used, taps, comparisons, jobs=jobs, minutes=minutes, kept=keep, plot=plot, failures=failures
     )
     if smoke:
         plan = locate_plan.smoke_plan(used)
