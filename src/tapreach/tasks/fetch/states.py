@@ -82,24 +82,24 @@ STATES: Mapping[Phase, State] = {
             Outcome.CANNOT: Phase.REFUSED,
         },
         _STANDS,
-        Phase.PREVIEW,
+        Phase.LOOK,
     ),
     Phase.CONFIRM: State(
-        "waits for the operator's word", 0.3, {Outcome.DONE: Phase.ZERO}, _STANDS, Phase.PREVIEW
+        "waits for the operator's word", 0.3, {Outcome.DONE: Phase.ZERO}, _STANDS, Phase.LOOK
     ),
     Phase.ZERO: State(
         "looks at its own claw, to know where it really is",
         0.3,
-        {Outcome.DONE: Phase.APPROACH},
+        {Outcome.DONE: Phase.APPROACH, Outcome.CANNOT: Phase.REFUSED},
         "the robot stands, the arm holds its pose",
-        Phase.ZERO,
+        Phase.LOOK,
     ),
     Phase.APPROACH: State(
         "drives to where it sees the whole thing from near",
         0.4,
         {Outcome.DONE: Phase.LAST_LOOK, Outcome.LOST: Phase.FAILED, Outcome.CANNOT: Phase.REFUSED},
         _STANDS,
-        Phase.APPROACH,
+        Phase.LOOK,
     ),
     Phase.LAST_LOOK: State(
         "measures the thing once more and plans the grasp",
@@ -111,7 +111,7 @@ STATES: Mapping[Phase, State] = {
             Outcome.CANNOT: Phase.REFUSED,
         },
         _STANDS,
-        Phase.APPROACH,
+        Phase.LOOK,
     ),
     Phase.REACH: State(
         "brings the open claw around the thing",
@@ -144,7 +144,7 @@ STATES: Mapping[Phase, State] = {
     Phase.BACK_OFF: State(
         "opens the claw, backs off and looks for the thing again",
         0.55,
-        {Outcome.DONE: Phase.LAST_LOOK, Outcome.LOST: Phase.FAILED, Outcome.CANNOT: Phase.FAILED},
+        {Outcome.DONE: Phase.LOOK, Outcome.LOST: Phase.FAILED, Outcome.CANNOT: Phase.FAILED},
         "the robot stands, the claw is open",
         Phase.BACK_OFF,
     ),
