@@ -56,14 +56,14 @@ class LocateTask:
         follower = Follower(context, tap, key=self._target_id, uses_background=self._use_background)
         report = TargetReport(self._target_id, TargetSource.LOCATE, tap, context.description)
         try:
-            return await _Locating(context, follower, report, self._accuracy).run()
+            return await Locating(context, follower, report, self._accuracy).run()
         finally:
             context.show_move(None)
             await follower.close()
 
 
-class _Locating:
-    """One run of the task."""
+class Locating:
+    """One run of the task, on a tap that `aimed` has seen; a task that goes on with the thing keeps it."""
 
     def __init__(
         self, context: TaskContext, follower: Follower, report: TargetReport, accuracy: float
@@ -81,7 +81,18 @@ class _Locating:
         self._cut_short = ""
         """Why the newest move was ended before it was done; '' when it was not."""
 
+    @property
+    def estimate(self) -> LocatedPoint | None:
+        """What is known by now; None before there are two sightings."""
+        return self._estimate
+
+    @property
+    def follower(self) -> Follower:
+        """What follows the tapped place."""
+        return self._follower
+
     async def run(self) -> str:
+        """Locate and return the closing sentence. Raises as LocateTask.run."""
         self._say("look", 0.0, "looking at the tapped place")
         self._stops.append(await self._follower.open())
         self._show()
@@ -89,6 +100,18 @@ class _Locating:
         end = await self._refine()
         await self._renew(with_advice=end not in (End.REACHED, End.LOST))
         return self._conclusion(end)
+
+    async def drive(self, motion: Coroutine[Any, Any, object]) -> None:
+        """Go on following and estimating while `motion` is carried out, and look once it has ended.
+
+        Raises TargetLost when the place is not seen any more and not known, MotionInterrupted, LinkLost.
+        """
+        await self._follower.during(motion, self._keep_up)
+        await self._look()
+
+    async def _keep_up(self) -> None:
+        if self._context.clock.now_ns() - self._renewed_ns >= _RENEW_EVERY_NS:
+            await self._renew(with_advice=False)
 
     async def _refine(self) -> End:
         """Move and look until there is a reason to end it."""
