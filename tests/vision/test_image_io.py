@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tapreach.vision.image_io import BrokenPicture, decode_gray
+from tapreach.vision.image_io import BrokenPicture, decode_color, decode_gray
 from vision.synthetic import texture, view
 
 
@@ -19,6 +19,14 @@ def test_whole_jpeg_decodes_to_its_size() -> None:
     assert (picture.shape, picture.dtype) == ((480, 640), np.uint8)
 
 
+def test_color_picture_keeps_the_order_of_its_colors() -> None:
+    blue = np.zeros((48, 64, 3), np.uint8)
+    blue[:, :, 0] = 200
+    picture = decode_color(bytes(cv2.imencode(".jpg", blue)[1]))
+    assert isinstance(picture, np.ndarray)
+    assert np.abs(picture.reshape(-1, 3).mean(axis=0) - (200, 0, 0)).max() < 4.0
+
+
 @pytest.mark.parametrize(
     ("broken", "word"),
     [
@@ -29,6 +37,6 @@ def test_whole_jpeg_decodes_to_its_size() -> None:
     ],
 )
 def test_broken_jpeg_says_why(broken: bytes, word: str) -> None:
-    result = decode_gray(broken)
-    assert isinstance(result, BrokenPicture)
-    assert word in result.reason
+    for result in (decode_gray(broken), decode_color(broken)):
+        assert isinstance(result, BrokenPicture)
+        assert word in result.reason

@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 Gray = NDArray[np.uint8]
 """(height, width), indexed [v, u]."""
 
+Color = NDArray[np.uint8]
+"""(height, width, 3), indexed [v, u], blue, green, red (OpenCV)."""
+
 _START = b"\xff\xd8"
 _END = b"\xff\xd9"
 
@@ -26,12 +29,21 @@ def decode_gray(jpeg: bytes) -> Gray | BrokenPicture:
     A JPEG that was cut short is refused: decoders fill the missing part with grey, which a tracker would
     follow.
     """
+    return _decoded(jpeg, cv2.IMREAD_GRAYSCALE)
+
+
+def decode_color(jpeg: bytes) -> Color | BrokenPicture:
+    """Return the picture of a JPEG in colour; BrokenPicture as `decode_gray`."""
+    return _decoded(jpeg, cv2.IMREAD_COLOR)
+
+
+def _decoded(jpeg: bytes, how: int) -> NDArray[np.uint8] | BrokenPicture:
     if not jpeg.startswith(_START):
         return BrokenPicture(f"{len(jpeg)} bytes that do not begin like a JPEG")
     if _END not in jpeg[-64:]:
         return BrokenPicture(f"a JPEG of {len(jpeg)} bytes that was cut short")
     try:
-        picture = cv2.imdecode(np.frombuffer(jpeg, dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
+        picture = cv2.imdecode(np.frombuffer(jpeg, dtype=np.uint8), how)
     except cv2.error as error:
         return BrokenPicture(f"a JPEG that cannot be decoded ({error.err})")
     if picture is None:
