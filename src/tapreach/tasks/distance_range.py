@@ -6,6 +6,7 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.guessing import guess_sigma, may_be_on
+from tapreach.tasks.optics import optics_of, points_in_camera
 from tapreach.tasks.sighting import Sighting, is_apart, ray_of
 from tapreach.vision.track import Guess
 
@@ -61,7 +62,7 @@ class DistanceRange:
         share = (first_sigma**2 / (first_sigma**2 + last_sigma**2))[:, None]
         pixels = share * by_last + (1.0 - share) * now
         sigmas = np.minimum(first_sigma, last_sigma)
-        if not np.any(is_valid & may_be_on(self._description.camera.model().size, pixels, sigmas)):
+        if not np.any(is_valid & may_be_on(optics_of(self._description.camera)[0].size, pixels, sigmas)):
             return ()
         return tuple(
             Guess(float(u), float(v), last.scale * float(ratio), float(sigma))
@@ -82,9 +83,8 @@ class DistanceRange:
 
     def _seen_from(self, points: FloatArray, world_from_base: PlanarPose) -> tuple[FloatArray, FloatArray]:
         """Return pixels (n, 2) and depths (n,) [m] of points; a depth of 0 says that it is not seen."""
-        camera, mount = self._description.camera.model(), self._description.camera.mount.base_from_camera()
-        in_camera = (world_from_base.to_rigid() * mount).inv().apply(points)
-        projection = camera.project(in_camera)
+        in_camera = points_in_camera(points, world_from_base, self._description.camera)
+        projection = optics_of(self._description.camera)[0].project(in_camera)
         return projection.pixels, np.where(projection.is_valid, in_camera[:, 2], 0.0)
 
     def _misfits(self, sighting: Sighting) -> FloatArray:

@@ -5,12 +5,12 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import RigidTransform
 
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.optics import optics_of, points_in_camera
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.vision.track import Guess
 
@@ -38,21 +38,17 @@ def guesses_for(
     """
     ray = ray_of(last, description)
     points_in_world = np.stack([ray.at(distance) for distance in distances])
-    camera_from_world = _camera_from_world(world_from_base, description)
-    return tuple(_seen(points_in_world, camera_from_world.apply(points_in_world), last, description))
-
-
-def _camera_from_world(world_from_base: PlanarPose, description: RobotDescription) -> RigidTransform:
-    return (world_from_base.to_rigid() * description.camera.mount.base_from_camera()).inv()
+    in_camera = points_in_camera(points_in_world, world_from_base, description.camera)
+    return tuple(_seen(points_in_world, in_camera, last, description))
 
 
 def _seen(
-    points_in_world: FloatArray, points_in_camera: FloatArray, last: Sighting, description: RobotDescription
+    points_in_world: FloatArray, in_camera: FloatArray, last: Sighting, description: RobotDescription
 ) -> Iterable[Guess]:
-    camera = description.camera.model()
-    projection = camera.project(points_in_camera)
-    depths_before = _camera_from_world(last.world_from_base, description).apply(points_in_world)[:, 2]
-    nearer = np.where(projection.is_valid, depths_before / points_in_camera[:, 2], 1.0)
+    camera = optics_of(description.camera)[0]
+    projection = camera.project(in_camera)
+    depths_before = points_in_camera(points_in_world, last.world_from_base, description.camera)[:, 2]
+    nearer = np.where(projection.is_valid, depths_before / in_camera[:, 2], 1.0)
     sigmas = guess_sigma(last.sigma, projection.pixels - last.pixel.to_array(), nearer, description)
     if not np.any(projection.is_valid & may_be_on(camera.size, projection.pixels, sigmas)):
         return

@@ -3,20 +3,18 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.observation import Observation
 from tapreach.estimation.step_knowledge import StepKnowledge
-from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
-from tapreach.geometry.pose import pose_to_matrix
 from tapreach.geometry.ray import Ray
 from tapreach.robot.config import CameraSection, RobotDescription
+from tapreach.tasks.optics import optics_of
 
 NEAREST = 0.5
 """Distance [m] at which an advance moves the picture as much as is reckoned with."""
@@ -60,7 +58,7 @@ def observation_of(
     sighting: Sighting, description: RobotDescription, base_from_camera: RigidTransform | None = None
 ) -> Observation:
     """Return it as the estimator wants it; base_from_camera: where known better than by the robot's file."""
-    lens, mount, _ = _optics(description.camera)
+    lens, mount, _ = optics_of(description.camera)
     return Observation(
         sighting.pixel,
         sighting.sigma,
@@ -79,20 +77,13 @@ def rays_of(sightings: Sequence[Sighting], description: RobotDescription) -> tup
     """Return the lines of sight in the world, in the order of the sightings."""
     if not sightings:
         return ()
-    camera, _, base_from_camera = _optics(description.camera)
+    camera, _, base_from_camera = optics_of(description.camera)
     poses = [sighting.world_from_base for sighting in sightings]
     pixels = np.array([(sighting.pixel.u, sighting.pixel.v) for sighting in sightings])
     directions = _turned(camera.unproject(pixels) @ base_from_camera[:3, :3].T, poses)
     origins = _turned(np.tile(base_from_camera[:3, 3], (len(poses), 1)), poses)
     origins[:, :2] += [(pose.x, pose.y) for pose in poses]
     return tuple(map(Ray, origins, directions))
-
-
-@lru_cache(maxsize=4)
-def _optics(camera: CameraSection) -> tuple[Camera, RigidTransform, FloatArray]:
-    """Return lens and base_from_camera, also as (4, 4): asked for many times a frame, and always the same."""
-    mount = camera.mount.base_from_camera()
-    return camera.model(), mount, pose_to_matrix(mount)
 
 
 def _turned(vectors: FloatArray, poses: Sequence[PlanarPose]) -> FloatArray:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tapreach.geometry.finite import FloatArray
+from tapreach.vision.cut_out import cut_around
 from tapreach.vision.image_io import Gray
 from tapreach.vision.warp import Warp
 
@@ -20,6 +21,8 @@ Points = NDArray[np.float32]
 _WINDOW = (21, 21)
 _LEVELS = 4
 _CRITERIA = (cv2.TERM_CRITERIA_EPS | cv2.TERM_CRITERIA_COUNT, 20, 0.02)
+NEAR, FAR = 48, 200
+"""Room around the corners [px] for the window, and for what moves otherwise than expected."""
 _FORTH_AND_BACK = 0.8
 _CORNERS = 36
 _LEAST_AGREEING = 5
@@ -55,22 +58,16 @@ def corners_near(picture: Gray, u: float, v: float, radius: float) -> Points:
 
 
 def motions_between(
-    before: Gray, now: Gray, points: Points, shift: tuple[float, float]
+    before: Gray, now: Gray, points: Points, shift: tuple[float, float], room: int = NEAR
 ) -> tuple[Motion, ...]:
     """Return the similarities that most of `points` (n, 2) agree on, the one with most of them first: at
     most two, none when too few agree.
 
-    `shift` [px] is where they are expected to have gone.
+    `shift` [px] is where they are expected to have gone, give or take about `room` [px].
     """
     if len(points) < _LEAST_AGREEING:
         return ()
-    start = points.reshape(-1, 1, 2)
-    guess = start + np.array(shift, dtype=np.float32)
-    forth = carried(before, now, start, guess, _WINDOW, _LEVELS, _CRITERIA)
-    back = carried(now, before, forth[0], start, _WINDOW, _LEVELS, _CRITERIA)
-    gap = np.linalg.norm(back[0] - start, axis=2).ravel()
-    is_kept = forth[1] & back[1] & (gap < _FORTH_AND_BACK)
-    left, gone = points[is_kept], forth[0].reshape(-1, 2)[is_kept]
+    left, gone = _followed(before, now, points, shift, room)
     every, motions = (left, gone), list[Motion]()
     while len(motions) < _MOST_MOTIONS:
         found = _agreed(left, gone)
@@ -80,6 +77,21 @@ def motions_between(
         motions.append(Motion(warp, gone[inliers], _disagreement(warp, *every)))
         left, gone = left[~inliers], gone[~inliers]
     return tuple(motions)
+
+
+def _followed(
+    before: Gray, now: Gray, points: Points, shift: tuple[float, float], room: int
+) -> tuple[Points, Points]:
+    """Return those of `points` (n, 2) that are followed forth and back, and where they have gone."""
+    part = cut_around(before, now, points, shift, room)
+    if part is None:
+        return points[:0], points[:0]
+    start = points - part.before_at
+    # What the parts were moved by is most of the shift; the rest is below a pixel.
+    forth, is_found = carried(part.before, part.now, start, start, _WINDOW, _LEVELS, _CRITERIA)
+    back, is_back = carried(part.now, part.before, forth, start, _WINDOW, _LEVELS, _CRITERIA)
+    is_kept = is_found & is_back & (np.linalg.norm(back - start, axis=1) < _FORTH_AND_BACK)
+    return points[is_kept], forth[is_kept] + part.now_at
 
 
 def _disagreement(warp: Warp, before: Points, now: Points) -> FloatArray:

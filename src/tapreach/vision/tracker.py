@@ -18,7 +18,7 @@ from tapreach.geometry.pixel import ImageSize, Pixel, require_inside
 from tapreach.vision.band import Band
 from tapreach.vision.carried import Start, carried, conflict, joined, sigma_of
 from tapreach.vision.core import looseness
-from tapreach.vision.flow import Motion, Points, corners_near, motions_between
+from tapreach.vision.flow import FAR, Motion, Points, corners_near, motions_between
 from tapreach.vision.image_io import Gray
 from tapreach.vision.look import Fit, Look, context_score, fit_look, later_look, tapped_look
 from tapreach.vision.patch import cut_patch
@@ -125,7 +125,7 @@ class PatchTracker:
         motions = motions_between(self._picture, picture, self._points, shift)
         if motions or not guesses:
             return motions
-        return motions_between(self._picture, picture, self._points, (0.0, 0.0))
+        return motions_between(self._picture, picture, self._points, shift, FAR)
 
     def _other_starts(self, motions: Sequence[Motion], guesses: Sequence[Guess] | None) -> list[Start]:
         starts = [] if motions or guesses else [Start(calmed(self._warp), None)]
