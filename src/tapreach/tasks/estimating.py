@@ -58,12 +58,21 @@ class LocatedPoint(PointEstimate):
         return self.sightings[-1].world_from_base.to_rigid()
 
 
-def estimate(sightings: Sequence[Sighting], description: RobotDescription, with_advice: bool) -> LocatedPoint:
+def estimate(
+    sightings: Sequence[Sighting],
+    description: RobotDescription,
+    with_advice: bool,
+    is_newest_unconfirmed: bool = False,
+) -> LocatedPoint:
     """Return where the target of the sightings is, with everything that the robot's file and the background
     say of its motion.
+
+    is_newest_unconfirmed: the last one counts where it fits, and says nothing of the way where it does not.
     """
     straight, found = _estimated(sightings, description, with_advice)
     since = _last_before_contradiction(found, len(sightings))
+    if since is not None and is_newest_unconfirmed:
+        return estimate(sightings[:-1], description, with_advice)
     if since is not None:
         straight, found = _estimated(sightings, description, with_advice, slipped_since=since)
     values = {field.name: getattr(found, field.name) for field in fields(found)}

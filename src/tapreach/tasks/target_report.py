@@ -7,14 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from tapreach.estimation.point_estimate import PointEstimate
+from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.ray import Ray
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import HeadingSource, LocatedPoint
 from tapreach.tasks.extent import extent_of
+from tapreach.tasks.present_base import PresentPoint, at_present
 from tapreach.tasks.sighting import Sighting, rays_of
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.task import Tap
+
+_SIGMAS_95 = 1.96
 
 
 @dataclass(frozen=True)
@@ -32,11 +36,17 @@ class TargetReport:
         estimate: PointEstimate | None,
         is_following: bool,
         reason: str = "",
+        here: PlanarPose | None = None,
     ) -> Target:
-        """Return the target as it stands; `reason` replaces the estimate's own."""
-        here = sightings[-1].world_from_base
+        """Return the target as it stands; `reason` replaces the estimate's own.
+
+        here: the base by the wheels, where it has moved on since the newest sighting.
+        """
+        here = sightings[-1].world_from_base if here is None else here
+        present = None
         if isinstance(estimate, LocatedPoint):
             sightings = estimate.sightings
+            present = at_present(estimate, here, self.description)
         point = estimate.point_in_world if estimate is not None else None
         rays = rays_of(sightings, self.description)
         return Target(
@@ -49,13 +59,19 @@ class TargetReport:
             u=self.tap.u,
             v=self.tap.v,
             point_in_world=point,
-            point_cov_in_world=estimate.point_cov_in_world if estimate is not None else None,
+            point_cov_in_world=_covariance(estimate, present),
             range=floor_distance(here, point) if point is not None else None,
-            range_interval=_range_interval(here, rays, estimate),
+            range_interval=_widened(_range_interval(here, rays, estimate), here, present),
             rays_in_world=rays,
             is_following=is_following,
             extent=extent_of(self.tap.box, sightings[0], estimate, self.description),
         )
+
+
+def _covariance(estimate: PointEstimate | None, present: PresentPoint | None) -> FloatArray | None:
+    if present is not None:
+        return present.cov_in_world
+    return estimate.point_cov_in_world if estimate is not None else None
 
 
 def _reason(given: str, estimate: PointEstimate | None) -> str:
@@ -94,3 +110,18 @@ def _range_interval(
     if point is not None:
         distances.append(floor_distance(here, point))
     return min(distances), max(distances)
+
+
+def _widened(
+    interval: tuple[float, float] | None, here: PlanarPose, present: PresentPoint | None
+) -> tuple[float, float] | None:
+    """Return the 95 % interval of the range with what the way since the newest sighting adds."""
+    if interval is None or present is None:
+        return interval
+    point = present.point_in_world
+    middle, ahead = floor_distance(here, point), point - (here.x, here.y, point[2])
+    if middle == 0.0:
+        return interval
+    by_way = _SIGMAS_95 * math.sqrt(present.way_variance_along(ahead / middle))
+    low, high = interval
+    return max(0.0, middle - math.hypot(middle - low, by_way)), middle + math.hypot(high - middle, by_way)
