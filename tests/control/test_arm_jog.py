@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tapreach.control.arm_jog import jogged
-from tapreach.robot.config import ArmPoseSection, ArmSection
+from tapreach.robot.arm_section import ArmPoseSection, ArmSection
 from tapreach.robot.messages import ArmPose
 
 ARM = ArmSection(

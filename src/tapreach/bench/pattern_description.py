@@ -1,9 +1,8 @@
 """The robot file of the pattern robot."""
 
 from tapreach.geometry.pixel import ImageSize
+from tapreach.robot.arm_section import ArmPoseSection, ArmSection
 from tapreach.robot.config import (
-    ArmPoseSection,
-    ArmSection,
     BaseSection,
     CameraSection,
     MountSection,

@@ -4,8 +4,9 @@ from dataclasses import replace
 from math import radians
 from typing import Literal
 
-from tapreach.robot.config import ArmSection, RangeDeg
+from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.messages import ArmPose
+from tapreach.robot.section import RangeDeg
 
 Control = Literal["T", "R", "left", "right", "forward", "backward"]
 CLAW_TRAVEL_DEG = 70.0

@@ -1,6 +1,9 @@
 """The Pilot that tasks are given: motions handed to the control loop."""
 
+from collections.abc import Sequence
+
 from tapreach.control.arm_move import ArmMove
+from tapreach.control.arm_path_motion import ArmPathMotion, TimedPose
 from tapreach.control.joined_motion import ArmFirst, InTurn, Rest
 from tapreach.control.loop import ControlLoop
 from tapreach.control.motion import Motion
@@ -45,3 +48,7 @@ class LoopPilot:
     async def move_arm(self, target: ArmPose) -> None:
         """See Pilot."""
         await self._loop.carry_out(ArmMove(self._loop.move_arm, target))
+
+    async def follow_arm(self, path: Sequence[TimedPose]) -> None:
+        """See Pilot."""
+        await self._loop.carry_out(ArmPathMotion(self._loop.move_arm, path))

@@ -1,7 +1,9 @@
 """What a task may ask of the wheels and the arm. The control loop carries it out, gated like any operator."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
+from tapreach.control.arm_path_motion import TimedPose
 from tapreach.errors import TapreachError
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.messages import ArmPose, Odometry
@@ -34,4 +36,11 @@ class Pilot(Protocol):
 
     async def move_arm(self, target: ArmPose) -> None:
         """Send the arm to `target` and return when it has come to rest."""
+        ...
+
+    async def follow_arm(self, path: Sequence[TimedPose]) -> None:
+        """Lead the arm through `path`, each pose at its time, and return when it has come to rest.
+
+        Ended early the arm holds where it is. Raises InputError for times that do not rise.
+        """
         ...

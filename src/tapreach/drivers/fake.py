@@ -13,8 +13,9 @@ from tapreach.drivers.fake_picture import FakePicture
 from tapreach.errors import LinkLost
 from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.clock import MS, SECOND, Clock
-from tapreach.robot.config import ArmSection, RobotDescription
+from tapreach.robot.config import RobotDescription
 from tapreach.robot.interface import Listeners, Unsubscribe
 from tapreach.robot.messages import (
     STILL,

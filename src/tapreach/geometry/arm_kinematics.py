@@ -8,6 +8,7 @@ bending down. Source: law of cosines; Craig, Introduction to Robotics, 4.4.
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +17,7 @@ from tapreach.errors import InputError
 from tapreach.geometry.finite import FloatArray, finite_array, not_negative, positive
 
 Range = tuple[float, float]
+JOINT_NAMES = ("rotation", "shoulder", "elbow")
 _FULL_TURN: Range = (-math.pi, math.pi)
 
 
@@ -47,6 +49,28 @@ class Reach:
     missing: float
 
 
+class ArmKinematics(Protocol):
+    """What an arm of three turning joints can be asked, however it is built."""
+
+    def forward(self, joints: ArmJoints) -> FloatArray:
+        """Return where the point between the finger tips is, (3,) in the base frame [m]."""
+        ...
+
+    def inverse(self, tip_in_base: npt.ArrayLike, near: ArmJoints | None = None) -> Reach:
+        """Return joints that bring the finger tips to (3,) in the base frame, of several those near `near`.
+
+        Raises InputError only for coordinates that are not finite.
+        """
+        ...
+
+    def skeleton(self, joints: ArmJoints) -> FloatArray:
+        """Return the ends of the links from the base outwards, (n, 3) in the base frame [m].
+
+        The last two are the wrist and the point between the finger tips.
+        """
+        ...
+
+
 @dataclass(frozen=True)
 class ArmGeometry:
     """Sizes of the arm [m] and the ranges of its joints [rad].
@@ -69,24 +93,32 @@ class ArmGeometry:
         positive("upper", self.upper)
         positive("fore", self.fore)
         not_negative("hand", self.hand)
-        for name in ("rotation_range", "shoulder_range", "elbow_range"):
+        for name in (f"{joint}_range" for joint in JOINT_NAMES):
             low, high = finite_array(name, getattr(self, name), (2,))
             if low >= high:
                 raise InputError(f"{name} is {low:g} to {high:g}; the first must be the smaller")
 
     def forward(self, joints: ArmJoints) -> FloatArray:
         """Return where the point between the finger tips is, (3,) in the base frame [m]."""
-        slope = joints.shoulder + joints.elbow
-        ahead = self.upper * math.sin(joints.shoulder) + self.fore * math.cos(slope) + self.hand
-        up = self.upper * math.cos(joints.shoulder) - self.fore * math.sin(slope)
-        c, s = math.cos(joints.rotation), math.sin(joints.rotation)
-        x, y, z = self.shoulder_in_base
-        return np.array([x + c * ahead, y + s * ahead, z + up])
+        tip: FloatArray = self.skeleton(joints)[-1]
+        return tip
 
-    def inverse(self, tip_in_base: npt.ArrayLike) -> Reach:
+    def skeleton(self, joints: ArmJoints) -> FloatArray:
+        """Return shoulder, elbow, wrist and the point between the finger tips, (4, 3) in the base [m]."""
+        slope = joints.shoulder + joints.elbow
+        elbow = self.upper * np.array([math.sin(joints.shoulder), math.cos(joints.shoulder)])
+        wrist = elbow + self.fore * np.array([math.cos(slope), -math.sin(slope)])
+        ahead_and_up = np.array([(0.0, 0.0), elbow, wrist, (wrist[0] + self.hand, wrist[1])])
+        direction = np.array([math.cos(joints.rotation), math.sin(joints.rotation), 0.0])
+        up = np.array([0.0, 0.0, 1.0])
+        in_plane: FloatArray = ahead_and_up[:, :1] * direction + ahead_and_up[:, 1:] * up
+        return in_plane + self.shoulder_in_base
+
+    def inverse(self, tip_in_base: npt.ArrayLike, near: ArmJoints | None = None) -> Reach:
         """Return the joints that bring the finger tips to (3,) in the base frame, elbow up.
 
-        Raises InputError only for coordinates that are not finite.
+        There is one such solution, whatever `near` is. Raises InputError only for coordinates that are not
+        finite.
         """
         offset = finite_array("tip_in_base", tip_in_base, (3,)) - self.shoulder_in_base
         ahead, up = math.hypot(offset[0], offset[1]) - self.hand, float(offset[2])
@@ -107,17 +139,22 @@ class ArmGeometry:
         return self._within_ranges(ArmJoints(rotation, math.pi / 2.0 - raised, bend - math.pi / 2.0))
 
     def _within_ranges(self, joints: ArmJoints) -> Reach:
-        for name in ("rotation", "shoulder", "elbow"):
-            angle: float = getattr(joints, name)
-            low, high = getattr(self, f"{name}_range")
-            missing = max(low - angle, angle - high)
-            if missing > 1e-9:
-                reason = (
-                    f"the {name} would have to be {math.degrees(angle):.0f}°; "
-                    f"it goes from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°"
-                )
-                return Reach(ReachStatus.BEYOND_JOINT_RANGE, reason, None, missing)
-        return Reach(ReachStatus.REACHABLE, "within reach", joints, 0.0)
+        ranges = (self.rotation_range, self.shoulder_range, self.elbow_range)
+        return within_ranges(joints, ranges)
+
+
+def within_ranges(joints: ArmJoints, ranges: tuple[Range, Range, Range]) -> Reach:
+    """Return `joints` as reached, or which of them is beyond its range [rad] and by how much."""
+    for name, (low, high) in zip(JOINT_NAMES, ranges, strict=True):
+        angle: float = getattr(joints, name)
+        missing = max(low - angle, angle - high)
+        if missing > 1e-9:
+            reason = (
+                f"the {name} would have to be {math.degrees(angle):.0f}°; "
+                f"it goes from {math.degrees(low):.0f}° to {math.degrees(high):.0f}°"
+            )
+            return Reach(ReachStatus.BEYOND_JOINT_RANGE, reason, None, missing)
+    return Reach(ReachStatus.REACHABLE, "within reach", joints, 0.0)
 
 
 def _cm(metres: float) -> str:

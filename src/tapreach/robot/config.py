@@ -2,26 +2,19 @@
 
 from math import radians
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field, model_validator
 from scipy.spatial.transform import RigidTransform
 
+from tapreach.errors import InputError
+from tapreach.geometry.arm_clearance import BodyBox
 from tapreach.geometry.camera import Camera
 from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.pose import camera_mount
-from tapreach.robot.messages import ArmPose
+from tapreach.robot.arm_section import ArmSection
+from tapreach.robot.section import Finite, Positive, RangeM, Section
 from tapreach.robot.toml_file import load_validated
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-RangeDeg = tuple[Finite, Finite]
-
-
-class Section(BaseModel):
-    """A table of a file that people write: unknown keys are errors."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class MountSection(Section):
@@ -101,37 +94,26 @@ class BaseSection(Section):
     )
 
 
-class ArmPoseSection(Section):
-    """A pose of the arm by its servos."""
+class BodyBoxSection(Section):
+    """A part of the base that the arm keeps clear of: from and to along each axis of the base frame [m]."""
 
-    rotation_deg: Finite = 0.0
-    shoulder_deg: Finite
-    elbow_deg: Finite
-    claw: float = Field(ge=0, description="opening [m]")
+    name: str = Field(min_length=1, description="as messages call it: 'chassis', 'camera'")
+    x: RangeM
+    y: RangeM
+    z: RangeM
 
-    def pose(self) -> ArmPose:
-        """Return it in radians."""
-        return ArmPose(
-            radians(self.rotation_deg), radians(self.shoulder_deg), radians(self.elbow_deg), self.claw
-        )
+    def box(self) -> BodyBox:
+        """Return it by its corners."""
+        low, high = zip(self.x, self.y, self.z, strict=True)
+        return BodyBox(self.name, low, high)
 
-
-class ArmSection(Section):
-    """The paper's arm: A turns it, B and C move it in a plane, a linkage keeps it level, D is the claw."""
-
-    shoulder_forward: Finite = Field(description="axis of B ahead of the wheel axis [m]; on the axis of A")
-    shoulder_left: Finite = Field(0.0, description="axis of A left of the middle [m]")
-    shoulder_up: Positive = Field(description="axis of B above the floor [m]")
-    upper_length: Positive = Field(description="axis of B to axis of C [m]")
-    fore_length: Positive = Field(description="axis of C to the wrist [m]")
-    hand_length: Positive = Field(description="wrist to the middle between the finger tips [m]")
-    claw_max: Positive = Field(description="widest opening [m]")
-    rotation_limits_deg: RangeDeg
-    shoulder_limits_deg: RangeDeg
-    elbow_limits_deg: RangeDeg
-    speed_deg_s: Positive = Field(140.0, description="fastest servo speed")
-    standard: ArmPoseSection = Field(description="pose for locating: out of the picture")
-    stowed: ArmPoseSection = Field(description="pose for driving")
+    @model_validator(mode="after")
+    def _has_a_size(self) -> "BodyBoxSection":
+        try:
+            self.box()
+        except InputError as error:
+            raise ValueError(str(error)) from None
+        return self
 
 
 class RobotDescription(Section):
@@ -142,6 +124,9 @@ class RobotDescription(Section):
     camera: CameraSection
     base: BaseSection
     arm: ArmSection
+    body: tuple[BodyBoxSection, ...] = Field(
+        (), description="what the arm keeps clear of besides the floor, as [[body]]"
+    )
     simulation: dict[str, object] = Field(
         default_factory=dict, description="scene and faults; see drivers/sim"
     )

@@ -5,8 +5,9 @@ from collections.abc import Callable
 from tapreach.drivers.sim.host_state import TickOdometry, arm_state, limited_arm, limited_twist
 from tapreach.drivers.sim.protocol import Drive, Message, MoveArm, Telemetry
 from tapreach.geometry.pixel import ImageSize
+from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.clock import Clock
-from tapreach.robot.config import ArmSection, BaseSection, CameraSection
+from tapreach.robot.config import BaseSection, CameraSection
 from tapreach.robot.interface import Listeners, Unsubscribe
 from tapreach.robot.messages import STILL, ArmPose, ArmState, Frame, Odometry, Twist
 

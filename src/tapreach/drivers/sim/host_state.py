@@ -5,7 +5,8 @@ from math import radians
 
 from tapreach.drivers.sim.protocol import Telemetry
 from tapreach.estimation.odometry import WheelOdometry
-from tapreach.robot.config import ArmSection, BaseSection
+from tapreach.robot.arm_section import ArmSection
+from tapreach.robot.config import BaseSection
 from tapreach.robot.messages import ArmPose, ArmState, Odometry, Twist
 
 SPEED_WINDOW_NS = 100_000_000
