@@ -58,20 +58,23 @@ class OdometryNoise:
         """
         if len(steps) == 1:  # as between two taps: plain numbers are many times faster here
             return self._errors_of_step(*steps[0].tolist())[None]
-        (first, last), advance = _split(steps)
-        heading, swing, sideways, along = self._spreads(first, last, advance)
+        turns, advance = _split(steps)
+        (first, last), (before, after) = turns, self._of_turns(np.abs(turns))
+        heading, swing, sideways, along = self._spreads(before, after, first + last, advance)
         in_step = np.zeros((len(steps), 3, 5))  # of the frame that looks along the advance
         in_step[:, 2, 2], in_step[:, 1, 3], in_step[:, 0, 4] = np.sqrt((heading, sideways, along))
         in_step[:, 1, 2] = swing * in_step[:, 2, 2]
-        in_step[:, 0, 0] = self.advance_scale * advance
-        in_step[:, 1, 1] = self.turn_scale * first * advance
-        in_step[:, 2, 1] = self.turn_scale * (first + last)
+        if self.advance_scale > 0.0 or self.turn_scale > 0.0:
+            in_step[:, 0, 0] = self.advance_scale * advance
+            in_step[:, 1, 1] = self.turn_scale * first * advance
+            in_step[:, 2, 1] = self.turn_scale * (first + last)
         return np.asarray(_turned(last) @ in_step)
 
     def _errors_of_step(self, x: float, y: float, turn: float) -> FloatArray:
         """Return `step_errors` (3, 5) of a single step."""
         first, last, advance = _split_step(x, y, turn)
-        heading, swing, sideways, along = self._spreads(first, last, advance)
+        turned = self._of_turns(abs(first)), self._of_turns(abs(last))
+        heading, swing, sideways, along = self._spreads(*turned, first + last, advance)
         heading, sideways, along = math.sqrt(heading), math.sqrt(sideways), math.sqrt(along)
         scaled, swung = self.advance_scale * advance, self.turn_scale * first * advance
         c, s = math.cos(last), math.sin(last)
@@ -83,11 +86,18 @@ class OdometryNoise:
             ]
         )
 
-    def _spreads(self, first: _Amount, last: _Amount, advance: _Amount) -> tuple[_Amount, ...]:
-        """Return variance of the heading, way sideways per error in it, other variance sideways and along."""
+    def _of_turns(self, amounts: _Amount) -> _Amount:
+        """Return the variance of turns by these amounts."""
+        return _variance(amounts, self.turn_per_sqrt_rad, self.turn_fraction)
+
+    def _spreads(
+        self, before: _Amount, after: _Amount, turn: _Amount, advance: _Amount
+    ) -> tuple[_Amount, ...]:
+        """Return variance of the heading, way sideways per error in it, other variance sideways and along.
+
+        before, after: variance of the turns before and after the advance; turn: both together.
+        """
         distance = abs(advance)
-        before = _variance(abs(first), self.turn_per_sqrt_rad, self.turn_fraction)
-        after = _variance(abs(last), self.turn_per_sqrt_rad, self.turn_fraction)
         drift = self.turn_per_sqrt_m**2 * distance
         turned = before + after
         heading = turned + drift
@@ -98,7 +108,7 @@ class OdometryNoise:
         # A heading that drifts on the way also leaves a twelfth of its square in the sideways error.
         sideways = advance * advance * (swing_left + drift / 12.0) + self.slip_per_sqrt_m**2 * distance
         along = _variance(distance, self.advance_per_sqrt_m, self.advance_fraction)
-        crept = (self.creep_per_rad * (first + last)) ** 2
+        crept = (self.creep_per_rad * turn) ** 2
         return heading, swing, sideways + crept, along + crept
 
 
@@ -128,21 +138,19 @@ def _split_step(x: float, y: float, turn: float) -> tuple[float, float, float]:
 
 def _split(steps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return steps (n, 3) as turns before and after (2, n) and advance (n,); it may be backwards."""
-    distance, heading = np.hypot(steps[:, 0], steps[:, 1]), steps[:, 2]
-    first = np.empty((2, len(steps)))  # turns before an advance forwards and backwards
-    np.arctan2(steps[:, 1], steps[:, 0], out=first[0])
-    first[1] = first[0] - np.copysign(math.pi, first[0])
-    last = _wrapped(heading - first)
-    turned = np.abs(first) + np.abs(last)
-    is_backwards = turned[1] < turned[0]
-    turns, advance = np.stack([first[0], last[0]]), distance
+    x, y, heading = steps.T
+    turns, advance = np.empty((2, len(steps))), np.hypot(x, y)
+    np.arctan2(y, x, out=turns[0])
+    turns[1] = _wrapped(heading - turns[0])
+    is_backwards = np.abs(turns).sum(axis=0) > math.pi  # then that turns less in all
     if is_backwards.any():
-        turns = np.where(is_backwards, [first[1], last[1]], turns)
-        advance = np.where(is_backwards, -distance, distance)
-    on_the_spot = distance < 1e-9
+        turns[0] -= is_backwards * np.copysign(math.pi, turns[0])
+        turns[1] = _wrapped(heading - turns[0])
+        advance[is_backwards] *= -1.0
+    on_the_spot = np.abs(advance) < 1e-9
     if on_the_spot.any():
         turns[0, on_the_spot], turns[1, on_the_spot] = _wrapped(heading[on_the_spot]), 0.0
-        advance = np.where(on_the_spot, 0.0, advance)
+        advance[on_the_spot] = 0.0
     return turns, advance
 
 
@@ -152,28 +160,29 @@ def _wrapped(angles: FloatArray) -> FloatArray:
 
 def pose_errors(poses: Sequence[PlanarPose], noise: OdometryNoise) -> FloatArray:
     """Return `chain_errors` (n, 3, k) of poses world_from_base along the way."""
-    return chain_errors(np.array([(pose.x, pose.y, pose.heading) for pose in poses]), noise)
+    given = np.array([(pose.x, pose.y, pose.heading) for pose in poses])
+    return chain_errors(_ways(given[0], given), noise)
 
 
 def chain_errors(poses: FloatArray, noise: OdometryNoise) -> FloatArray:
     """Return (n, 3, k): each pose's error (x, y, heading; right perturbation) per independent unit normal.
 
-    poses (n, 3), x, y, heading: world_from_base along the way; the first is taken as exact. k is 2 for the
-    shared scales and 3 for each step. The joint covariance of all poses is the product of this with its
-    transpose.
+    poses (n, 3), x, y, heading: along the way, as seen from the first, which is taken as exact. k is 2 for
+    the shared scales and for each step one for all that may err in it, at most 3. The joint covariance of
+    all poses is the product of this with its transpose.
     """
     steps = _ways(poses[:-1], poses[1:])
     count, own = len(steps), noise.step_errors(steps)
     if count == 1:  # nothing is carried on
         return np.concatenate([np.zeros_like(own), own])
-    onward = carried(_ways(poses[0], poses[1:]))
-    backward = _inverses(onward)
-    errors = np.zeros((count + 1, 3, 2 + 3 * count))
-    errors[1:, :, :2] = onward @ np.cumsum(backward @ own[..., :2], axis=0)
-    in_start = (backward @ own[..., 2:]).swapaxes(0, 1).reshape(3, 3 * count)
-    by_step = (onward.reshape(3 * count, 3) @ in_start).reshape(count, 3, 3 * count)
-    is_before = np.tri(count).repeat(3, axis=1)[:, None]  # a step moves no pose before it
-    np.multiply(by_step, is_before, out=errors[1:, :, 2:])
+    onward = carried(poses[1:])
+    in_start = _inverses(onward) @ own
+    shared, of_steps = in_start[..., :2].cumsum(axis=0), in_start[..., 2:].swapaxes(0, 1)
+    may_err = np.flatnonzero(own[..., 2:].any(axis=1))
+    each = of_steps.reshape(3, 3 * count).take(may_err, axis=1)
+    is_before = may_err // 3 <= np.arange(count)[:, None]  # a step moves no pose before it
+    errors = np.zeros((count + 1, 3, 2 + len(may_err)))
+    np.matmul(onward, np.concatenate([shared, is_before[:, None] * each], axis=2), out=errors[1:])
     return errors
 
 
