@@ -40,11 +40,13 @@ def _step(now: Linearised) -> tuple[FloatArray, float]:
 
     With e = r − Jz z and w = C⁻¹ (e + Jt dt), Jtᵀ w = 0: dz = −Jzᵀ w − z, and eᵀ w remains of the cost.
     """
-    by_target, by_errors, normals = now.by_target[0], now.by_errors[0], now.x[0, 3:]
-    expected = now.residuals[0] - by_errors @ normals
-    _, on_target, failed = dposv(now.on_target()[0], -(expected @ now.pull))
+    by_errors, normals = now.by_errors[0], now.x[0, 3:]
+    rows, solved = now.weighed_rows
+    products = rows.T @ solved
+    _, on_target, failed = dposv(products[:3, :3], -products[:3, 3])
     if failed:
         return np.zeros(now.x.shape[1]), np.inf
-    weighted = now.weighed(expected + by_target @ on_target)
+    weighted = solved[:, :3] @ on_target + solved[:, 3]
     step = np.concatenate([on_target, -(weighted @ by_errors) - normals])
-    return step, max(float(now.costs[0] - expected @ weighted), 0.0)  # below zero it is rounding
+    remains = products[3, 3] + products[3, :3] @ on_target
+    return step, max(float(now.costs[0] - remains), 0.0)  # below zero it is rounding

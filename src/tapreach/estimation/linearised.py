@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg.lapack import dpotrf, dpotri, dpotrs
+from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri
 
 from tapreach.geometry.finite import FloatArray
 
@@ -64,22 +64,28 @@ class Linearised:
         noise.ravel()[:: len(noise) + 1] += 1.0
         return np.asarray(dpotrf(noise, lower=1)[0])
 
-    @cached_property
-    def pull(self) -> FloatArray:
-        """C⁻¹ Jt (2n, 3) of a single point."""
-        return self.weighed(self.by_target[0])
-
     def weighed(self, right: FloatArray) -> FloatArray:
-        """Return C⁻¹ right, (2n,) or (2n, r), of a single point."""
+        """Return C⁻¹ right (2n, r) of a single point, for few r."""
         return right if self.by_errors.shape[2] == 0 else np.asarray(dpotrs(self.factor, right, lower=1)[0])
 
     @cached_property
-    def precision(self) -> FloatArray:
-        """C⁻¹ (2n, 2n) of a single point, for all that is asked of an answer."""
-        half = dpotri(self.factor, lower=1)[0]  # above the diagonal it holds zeros, as dpotrf leaves them
-        precision = half + half.T
-        precision.ravel()[:: len(half) + 1] *= 0.5
-        return np.asarray(precision)
+    def weighed_rows(self) -> tuple[FloatArray, FloatArray]:
+        """(Jt, e) and C⁻¹ (Jt, e), (2n, 4) each, of a single point; e = r − Jz z."""
+        by_errors = self.by_errors[0]
+        rows = np.empty((len(by_errors), 4))
+        rows[:, :3], rows[:, 3] = self.by_target[0], self.residuals[0] - by_errors @ self.x[0, 3:]
+        return rows, self.weighed(rows)
+
+    @cached_property
+    def pull(self) -> FloatArray:
+        """C⁻¹ Jt (2n, 3) of a single point."""
+        return self.weighed_rows[1][:, :3]
+
+    @cached_property
+    def unfactored(self) -> FloatArray:
+        """The inverse (2n, 2n) of the factor of a single point, so that its own product is C⁻¹."""
+        # LAPACK's own way to C⁻¹ (potri, potrs with many columns) starts threads for the smallest matrices.
+        return np.asarray(dtrtri(self.factor, lower=1)[0])
 
     def on_target(self) -> FloatArray:
         """Return the information (m, 3, 3) on (a, b, rho), the pose errors marginalised: equation (7)."""

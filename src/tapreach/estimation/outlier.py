@@ -55,17 +55,17 @@ def _gains_and_limits(model: ViewModel, solution: Solution) -> tuple[FloatArray,
     """Return (n,) each: the linear prediction (8a) of how much the cost falls without each view, and by how
     much it must fall, (8b).
 
-    I − P = C⁻¹ − C⁻¹ Jt S⁻¹ Jtᵀ C⁻¹, of which the diagonal blocks are needed.
+    I − P = C⁻¹ − C⁻¹ Jt S⁻¹ Jtᵀ C⁻¹, of which the diagonal blocks are needed; C⁻¹ = Gᵀ G.
     """
     views = solution.views
-    residuals = views.residuals[0]
+    residuals, pull, unfactored = views.residuals[0], views.pull, views.unfactored
     damped = solution.on_target + 1e-12 * np.diag(solution.on_target.diagonal())
-    remaining = views.precision - views.pull @ np.linalg.solve(damped, views.pull.T)
     if model.whitening is not None:  # a slip shifts one tap, and so what is expected of the next
-        remaining = model.whitening.T @ remaining @ model.whitening
-        residuals = model.whitening.T @ residuals
-    every = np.arange(model.views)
-    blocks = remaining.reshape(model.views, 2, model.views, 2)[every, :, every]
+        residuals, pull = model.whitening.T @ residuals, model.whitening.T @ pull
+        unfactored = unfactored @ model.whitening
+    by_view = unfactored.T.reshape(model.views, 2, -1)
+    solved = np.linalg.solve(damped, pull.T).T.reshape(model.views, 2, 3)
+    blocks = by_view @ by_view.mT - pull.reshape(model.views, 2, 3) @ solved.mT
     uu, uv, vv = blocks[:, 0, 0] + 1e-9, blocks[:, 0, 1], blocks[:, 1, 1] + 1e-9
     u, v = residuals[0::2], residuals[1::2]
     determinants = np.maximum(uu * vv - uv * uv, 1e-18)

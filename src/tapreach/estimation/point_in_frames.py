@@ -82,7 +82,7 @@ class TargetInFrames:
         """Return the place with what the errors of target and poses make of it: equation (7b)."""
         views = self.solution.views
         seen = views.by_errors[0] @ place.by_normals.T
-        solved = seen.T @ views.precision
+        solved = views.weighed(seen).T
         direct = place.by_target - solved @ views.by_target[0]
         remaining = place.by_normals @ place.by_normals.T - solved @ seen
         covariance = direct @ self.target_covariance @ direct.T + remaining
