@@ -92,6 +92,12 @@ class BaseSection(Section):
     creep_sigma_per_rad: float = Field(
         0.005, ge=0, description="how far it moves ahead or sideways while it turns on the spot [m/rad]"
     )
+    outline: tuple[tuple[Finite, Finite], ...] = Field(
+        (),
+        description="corners of the whole robot seen from above, x ahead and y left of the middle between the "
+        "wheels [m]; left out, it reaches around wheels and [[body]], and without [[body]] 0.10 m ahead and "
+        "0.15 m back",
+    )
 
 
 class BodyBoxSection(Section):
