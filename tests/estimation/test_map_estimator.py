@@ -179,6 +179,40 @@ def test_two_views_of_different_things_are_inconsistent():
     assert estimate.point_in_world is None
 
 
+def test_lines_of_sight_that_meet_nearer_than_anything_can_be_are_inconsistent():
+    close = MOUNT.apply([0.0, 0.0, 0.03])
+    sightings = observed(poses_along([PlanarStep(0.0, 0.003), PlanarStep(0.02, 0.003)]), close)
+    refused = estimate_point(sightings, ONE_PERCENT)
+    assert (refused.status, refused.range_interval_95) == (Status.INCONSISTENT, None)
+    assert "nearer than 5 cm" in refused.reason
+    allowed = estimate_point(sightings, ONE_PERCENT, range_prior=RangePrior(0.01, 10.0))
+    assert allowed.status is Status.DETERMINED
+    np.testing.assert_allclose(allowed.point_in_world, close, atol=1e-6)
+
+
+def test_no_point_is_given_that_lies_behind_a_camera_where_the_poses_put_it():
+    # The last pose is said to lie 22 cm past where it was, and may well be as wrong as that.
+    true, said = (poses_along([PlanarStep(0.3, 0.1), PlanarStep(0.0, way)]) for way in (0.1, 0.32))
+    sightings = observed(true, MOUNT.apply([-0.05, 0.0, 0.35]), said=said)
+    covariances = np.array([np.diag([sd**2] * 3 + [1e-8] * 3) for sd in (1e-4, 1e-4, 0.3)])
+    estimate = estimate_point(sightings, covariances)
+    assert estimate.point_in_world is None
+    assert "nearer to a camera" in estimate.reason
+
+
+@pytest.mark.parametrize("distance", [1.0, 2.0, 4.0])
+def test_range_interval_holds_whatever_the_range_is(distance):
+    rng = np.random.default_rng(round(distance))
+    poses, held = poses_along([PlanarStep(0.2, 0.15)]), []
+    for _ in range(300):
+        sightings = observed(poses, MOUNT.apply([0.05, 0.02, distance]), sigma=2.5, rng=rng)
+        interval = estimate_point(sightings, ONE_PERCENT, with_advice=False).range_interval_95
+        assert interval is not None
+        true_range = math.hypot(0.05, 0.02, distance)
+        held.append(interval[0] <= true_range <= (interval[1] or math.inf))
+    assert 0.915 < np.mean(held) < 0.985
+
+
 def test_slipped_view_is_named_and_left_out():
     named, others, runs = 0, 0, 60
     for seed in range(runs):

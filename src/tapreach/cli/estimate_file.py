@@ -131,10 +131,13 @@ class TapNoisePart(Part):
 
 
 class RangePriorPart(Part):
-    """Ranges [m] that are possible at all."""
+    """Ranges [m] that are possible at all; the odds over their logarithm go as range^-falloff: 1 for even
+    odds over the inverse range, 0 for even odds over the logarithm.
+    """
 
     nearest: Positive = 0.05
     farthest: Positive = 100.0
+    falloff: NotNegative = 1.0
 
 
 class EstimateFile(Part):

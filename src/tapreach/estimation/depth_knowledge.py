@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
 _PLAIN_PARALLAX = 0.02  # sd times baseline; then noise cannot have made a target at infinity look near
+_BEYOND_CHANCE = 3.0  # sigmas of 1/Z
 _ALIKE = 2.0  # ... where no depth in one camera is more than this many times that in another
 
 
@@ -19,17 +21,28 @@ _ALIKE = 2.0  # ... where no depth in one camera is more than this many times th
 class DepthKnowledge:
     """inverse_depth 1/Z [1/m] and its sd in the first camera; slant: range over Z of the target's ray.
 
-    baseline [m]: the greatest distance between two cameras. posterior: over the range; None where 1/Z is
-    not known at all.
     least_sd: the larger of sd and the sd for a target at infinity, which noise cannot have made look near.
     """
 
+    model: ViewModel
+    solution: Solution
+    prior: RangePrior
     inverse_depth: float
     sd: float
     least_sd: float
     slant: float
-    baseline: float
-    posterior: RangePosterior | NearNormalPosterior | None
+
+    @property
+    def baseline(self) -> float:
+        """The greatest distance between two cameras [m]."""
+        return self.model.baseline
+
+    @cached_property
+    def posterior(self) -> RangePosterior | NearNormalPosterior | None:
+        """Over the range, computed when first asked for; None where 1/Z is not known at all."""
+        if self.inverse_depth > 0.0 and self.sd <= UP_TO * self.inverse_depth:
+            return NearNormalPosterior(self.inverse_depth, self.sd, self.slant, self.prior)
+        return None if math.isinf(self.sd) else range_posterior(self.model, self.solution, self.prior)
 
     @property
     def relative_sd(self) -> float:
@@ -45,6 +58,16 @@ class DepthKnowledge:
     def is_open_far(self) -> bool:
         """True where the target may as well be at infinity."""
         return self.inverse_depth <= 0.0 or (self.posterior is not None and self.posterior.is_open_far)
+
+    @property
+    def is_nearer_than_possible(self) -> bool:
+        """True where the target would be nearer than the nearest range there is, by more than chance."""
+        return self.inverse_depth - _BEYOND_CHANCE * self.sd > self.slant / self.prior.nearest
+
+    @property
+    def is_behind_as_given(self) -> bool:
+        """True where the target would be behind a camera used, were the poses without errors."""
+        return bool(np.any(self.model.depths(self.solution.x[:3])[self.model.is_used] <= 0.0))
 
     def likely_range(self) -> float:
         """Return a range [m] to plan with, also where it is open."""
@@ -65,13 +88,8 @@ def depth_knowledge(model: ViewModel, solution: Solution, prior: RangePrior) -> 
     """Return what the solution tells of the depth; the whole profile only where 1/Z is not nearly normal."""
     sd = _sd(solution.on_target)
     slant = math.hypot(*solution.x[:2].tolist(), 1.0)
-    rho = solution.inverse_depth
-    posterior: RangePosterior | NearNormalPosterior | None = None
-    if rho > 0.0 and sd <= UP_TO * rho:
-        posterior = NearNormalPosterior(rho, sd, slant, prior.nearest, prior.farthest)
-    elif not math.isinf(sd):
-        posterior = range_posterior(model, solution, prior)
-    return DepthKnowledge(rho, sd, _least_sd(model, solution, sd), slant, model.baseline, posterior)
+    least_sd = _least_sd(model, solution, sd)
+    return DepthKnowledge(model, solution, prior, solution.inverse_depth, sd, least_sd, slant)
 
 
 def _least_sd(model: ViewModel, solution: Solution, sd: float) -> float:

@@ -25,6 +25,8 @@ from tapreach.estimation.verdict import reason_without_baseline, verdict
 from tapreach.estimation.view_model import ViewModel, view_model
 from tapreach.geometry.finite import FloatArray
 
+_WITHOUT_RANGE = {Status.BEHIND, Status.INCONSISTENT}
+
 
 def estimate_point(
     observations: Sequence[Observation],
@@ -99,7 +101,7 @@ def _answer(
         bearing_inverse_depth_cov=covariance,
         relative_sd=depth.relative_sd,
         range=depth.slant / depth.inverse_depth if is_determined else None,
-        range_interval_95=None if status is Status.BEHIND else depth.range_interval(),
+        range_interval_95=None if status in _WITHOUT_RANGE else depth.range_interval(),
         residuals_px=residuals_px,
         rejected_views=model.left_out,
         in_frames=in_frames,

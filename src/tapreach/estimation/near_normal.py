@@ -1,13 +1,14 @@
 """The posterior over the range where the inverse depth is nearly normal: no profile is needed there.
 
-N(rho; estimate, sd²) times the prior, even odds over the logarithm of the range: density 1/rho in rho
-(docs/estimation.md, 9). It agrees with `range_posterior` to a tenth of a sigma (tests/estimation).
+N(rho; estimate, sd²) times the prior, whose density in rho goes as rho^(falloff - 1)
+(docs/estimation.md, 9a). It agrees with `range_posterior` to a tenth of a sigma (tests/estimation).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from tapreach.estimation.range_posterior import RangePrior
 from tapreach.geometry.finite import FloatArray
 
 UP_TO = 0.25
@@ -20,7 +21,7 @@ _OPEN = 1.96  # sigmas, as in `range_posterior`
 
 @dataclass(frozen=True)
 class NearNormalPosterior:
-    """inverse_depth, sd [1/m], sd at most 0.25 of it; slant: range over Z; nearest, farthest [m]: the prior.
+    """inverse_depth, sd [1/m], sd at most 0.25 of it; slant: range over Z; prior: over the range.
 
     An answer beyond the prior by more than 4 sigma stands against it, and the prior is dropped.
     """
@@ -28,13 +29,12 @@ class NearNormalPosterior:
     inverse_depth: float
     sd: float
     slant: float
-    nearest: float
-    farthest: float
+    prior: RangePrior
 
     @property
     def is_open_far(self) -> bool:
         """True where the farthest range is not worse than the best by more than chance (95 %)."""
-        sigmas = (self.inverse_depth - self.slant / self.farthest) / self.sd
+        sigmas = (self.inverse_depth - self.slant / self.prior.farthest) / self.sd
         return -_REACH < sigmas < _OPEN
 
     def quantile(self, probability: float) -> float:
@@ -53,11 +53,14 @@ class NearNormalPosterior:
         return self.slant / float(near), self.slant / float(far)
 
     def _weights(self, inverse_depths: FloatArray) -> FloatArray:
-        least, most = self.slant / self.farthest, self.slant / self.nearest
+        least, most = self.slant / self.prior.farthest, self.slant / self.prior.nearest
         lowest, highest = float(inverse_depths[0]), float(inverse_depths[-1])
         if not least < highest or not most > lowest:
             return _NORMAL
-        densities = _NORMAL / np.maximum(inverse_depths, 0.01 * self.inverse_depth)
+        densities = _NORMAL
+        if self.prior.falloff != 1.0:
+            relative = np.maximum(inverse_depths / self.inverse_depth, 0.01)
+            densities = _NORMAL * relative ** (self.prior.falloff - 1.0)
         if least <= lowest and highest <= most:
             return np.asarray(densities)
         densities = np.where((inverse_depths >= least) & (inverse_depths <= most), densities, 0.0)

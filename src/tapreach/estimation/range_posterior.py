@@ -1,4 +1,4 @@
-"""How far the target may be, where a single number would lie: a posterior over log range.
+"""How far the target may be, where a single number would lie: a posterior over the range.
 
 Everything but the inverse depth is profiled out, with Laplace's term for the width of what was profiled
 (docs/estimation.md, 9). Where the range is well determined this agrees with the normal approximation.
@@ -13,7 +13,7 @@ from tapreach.errors import InputError
 from tapreach.estimation.gauss_newton import descended
 from tapreach.estimation.map_solver import Solution, inverse_depth_information
 from tapreach.estimation.view_model import ViewModel
-from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.finite import FloatArray, not_negative
 
 _GRID = 32
 _TOLERANCE = 1e-3  # of the squared residuals; the posterior does not show less
@@ -22,16 +22,22 @@ _OPEN_BELOW = 3.84  # chi-square, one degree of freedom, 95 %
 
 @dataclass(frozen=True)
 class RangePrior:
-    """Ranges [m] that are possible at all; even odds over the logarithm of the range between them."""
+    """Ranges [m] that are possible at all, and how the odds over their logarithm go: as range^-falloff.
+
+    falloff 1: even odds over the inverse range, for which intervals hold any true range equally often;
+    0: even odds over the logarithm (docs/estimation.md, 9a). Raises InputError for what cannot be.
+    """
 
     nearest: float = 0.05
     farthest: float = 100.0
+    falloff: float = 1.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.nearest < self.farthest < float("inf"):
             raise InputError(
                 f"range prior is {self.nearest} to {self.farthest} m; give 0 < nearest < farthest"
             )
+        object.__setattr__(self, "falloff", not_negative("falloff", self.falloff))
 
 
 @dataclass(frozen=True)
@@ -63,8 +69,8 @@ def range_posterior(model: ViewModel, best: Solution, prior: RangePrior) -> Rang
     costs, widths = _profile(model, best, ranges)
     if not np.any(np.isfinite(costs)):
         return None
-    cells = np.gradient(np.log(ranges))
-    weights = np.exp(-0.5 * (costs - costs.min())) * widths * cells
+    odds = ranges**-prior.falloff * np.gradient(np.log(ranges))
+    weights = np.exp(-0.5 * (costs - costs.min())) * widths * odds
     open_far = bool(costs[-1] - costs.min() < _OPEN_BELOW)
     return RangePosterior(ranges, weights / weights.sum(), open_far)
 

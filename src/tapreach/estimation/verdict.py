@@ -34,8 +34,16 @@ def verdict(model: ViewModel, solution: Solution, depth: DepthKnowledge) -> tupl
             f"too little parallax: the camera moved {100.0 * depth.baseline:.0f} cm, almost along the line "
             f"of sight or by less than the errors of tap and odometry can show"
         )
+    if depth.is_nearer_than_possible:
+        met_cm, nearest_cm = 100.0 * depth.slant / depth.inverse_depth, 100.0 * depth.prior.nearest
+        return Status.INCONSISTENT, (
+            f"the lines of sight meet {met_cm:.2g} cm from the camera, where nothing can be nearer than "
+            f"{nearest_cm:.2g} cm; was the same thing tapped?"
+        )
     if depth.is_open_far:
         return Status.RANGE_BOUNDED_BELOW, "the target may be at any range from the lower limit on"
+    if depth.is_behind_as_given:
+        return Status.INCONSISTENT, "the target would be nearer to a camera than the poses are known"
     return Status.DETERMINED, f"range known to {100.0 * depth.relative_sd:.2g} % (one sigma)"
 
 
