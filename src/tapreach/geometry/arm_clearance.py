@@ -81,8 +81,15 @@ def arm_capsules(skeleton: FloatArray, claw: float, shape: ArmShape) -> tuple[Ca
 
 def clearance(capsules: Sequence[Capsule], boxes: Sequence[BodyBox]) -> Clearance:
     """Return what of the arm is nearest to the floor or to one of the boxes, to 1 mm."""
-    near = [_nearest(capsule, boxes) for capsule in capsules]
-    return min(near, key=lambda each: each.distance)
+    lines = [_along(capsule) for capsule in capsules]
+    points = np.concatenate(lines)
+    owners = np.repeat(np.arange(len(capsules)), [len(line) for line in lines])
+    radii = np.array([capsule.radius for capsule in capsules])[owners]
+    # One column for the floor, then one for each box.
+    ways = np.column_stack([points[:, 2], *_from_boxes(points, boxes)]) - radii[:, None]
+    row, column = np.unravel_index(np.argmin(ways), ways.shape)
+    others = ["floor", *(box.name for box in boxes)]
+    return Clearance(float(ways[row, column]), capsules[int(owners[row])].name, others[int(column)])
 
 
 def _off_the_base(link: Capsule) -> Capsule:
@@ -106,17 +113,17 @@ def _hand(skeleton: FloatArray, claw: float, shape: ArmShape) -> tuple[Capsule, 
     return left, right, Capsule("claw", wrist + half_palm, wrist - half_palm, shape.hand_radius)
 
 
-def _nearest(capsule: Capsule, boxes: Sequence[BodyBox]) -> Clearance:
+def _along(capsule: Capsule) -> FloatArray:
+    """Return points (n, 3) on the middle line of a capsule, its ends among them."""
     count = 2 + int(np.linalg.norm(capsule.end - capsule.start) / SPACING)
-    points = np.linspace(capsule.start, capsule.end, count)
-    floor = Clearance(float(points[:, 2].min()) - capsule.radius, capsule.name, "floor")
-    others = [Clearance(_from_box(points, box) - capsule.radius, capsule.name, box.name) for box in boxes]
-    return min([floor, *others], key=lambda each: each.distance)
+    return np.linspace(capsule.start, capsule.end, count)
 
 
-def _from_box(points: FloatArray, box: BodyBox) -> float:
-    """Return the least distance of points (n, 3) from the box; inside, less than 0 by their depth."""
-    outside = np.maximum(np.array(box.low) - points, points - np.array(box.high))
-    beyond = np.linalg.norm(np.maximum(outside, 0.0), axis=1)
-    inside = np.minimum(np.max(outside, axis=1), 0.0)
-    return float(np.min(beyond + inside))
+def _from_boxes(points: FloatArray, boxes: Sequence[BodyBox]) -> FloatArray:
+    """Return how far each of the points (n, 3) is from each box, (boxes, n); inside, less than 0."""
+    low = np.array([box.low for box in boxes]).reshape(-1, 1, 3)
+    high = np.array([box.high for box in boxes]).reshape(-1, 1, 3)
+    outside = np.maximum(low - points, points - high)
+    beyond = np.sqrt(np.sum(np.maximum(outside, 0.0) ** 2, axis=2))
+    distances: FloatArray = beyond + np.minimum(np.max(outside, axis=2), 0.0)
+    return distances

@@ -23,6 +23,8 @@ JOINT_SHARE = 0.6
 CLAW_SPEED = 0.06
 """[m/s]"""
 _LEAST_S = 0.02
+_SAME = math.radians(1.0)
+_TURN_OVER = math.radians(40.0)
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,9 @@ def straight_path(
     nearer). Raises InputError for a goal that is not finite.
     """
     goal = finite_array("tip_goal_in_base", tip_goal_in_base, (3,))
+    last = arm.pose_at(goal, start.claw, start)
+    if isinstance(last, Unreachable):
+        return last
     begin = arm.tip(start)
     count = 1 + math.ceil(float(np.linalg.norm(goal - begin)) / SPACING)
     poses = [start]
@@ -80,7 +85,7 @@ def straight_path(
         pose = arm.pose_at(tip, start.claw, poses[-1])
         if isinstance(pose, Unreachable):
             return pose
-        if _largest_turn(poses[-1], pose) > math.radians(40.0):
+        if _largest_turn(poses[-1], pose) > _TURN_OVER:
             return Unreachable("the line leads through a place where the arm would have to turn over")
         poses.append(pose)
     return _clear_path(poses, arm)
@@ -98,28 +103,32 @@ def joint_path(start: ArmPose, end: ArmPose, arm: ArmWorkspace) -> ArmPath | Unr
 def path_to(
     start: ArmPose, end: ArmPose, arm: ArmWorkspace, by_way_of: Sequence[ArmPose] = ()
 ) -> ArmPath | Unreachable:
-    """Return a clear way from pose to pose: the joints evenly, the tip straight, or over one of `by_way_of`.
+    """Return a clear way from pose to pose; the claw is narrow on it: it closes before or opens after it.
 
-    The first of them that is clear; the reason why none is, is that of the even turn. The claw is narrow on
-    the way: it closes before it or opens after it.
+    The first that is clear of these: all joints evenly; the tip in a straight line; first out, then round;
+    first round, then out; over one of `by_way_of`. The reason why none is, is that of the even turn.
     """
     claw = min(start.claw, end.claw)
-    narrow_start, narrow_end = replace(start, claw=claw), replace(end, claw=claw)
-    direct = joint_path(narrow_start, narrow_end, arm)
+    begin, goal = replace(start, claw=claw), replace(end, claw=claw)
+    direct = joint_path(begin, goal, arm)
     way = direct
     if isinstance(way, Unreachable):
-        way = straight_path(narrow_start, arm.tip(end), arm)
-    for pose in by_way_of:
+        way = _line_to(begin, goal, arm)
+    corners = (replace(goal, rotation=begin.rotation), replace(begin, rotation=goal.rotation))
+    for corner in (*corners, *(replace(pose, claw=claw) for pose in by_way_of)):
         if isinstance(way, ArmPath):
             break
-        way = _over(narrow_start, replace(pose, claw=claw), narrow_end, arm)
+        way = _joined(joint_path(begin, corner, arm), joint_path(corner, goal, arm))
     if isinstance(way, Unreachable):
         return direct
-    return _joined(joint_path(start, way.start, arm), way, joint_path(way.end, end, arm))
+    return _joined(joint_path(start, begin, arm), way, joint_path(goal, end, arm))
 
 
-def _over(start: ArmPose, over: ArmPose, end: ArmPose, arm: ArmWorkspace) -> ArmPath | Unreachable:
-    return _joined(joint_path(start, over, arm), joint_path(over, end, arm))
+def _line_to(start: ArmPose, end: ArmPose, arm: ArmWorkspace) -> ArmPath | Unreachable:
+    line = straight_path(start, arm.tip(end), arm)
+    if isinstance(line, ArmPath) and _largest_turn(line.end, end) > _SAME:
+        return Unreachable("the straight line ends with the arm folded otherwise")
+    return line if isinstance(line, Unreachable) else ArmPath((*line.poses[:-1], end), line.tips_in_base)
 
 
 def _joined(*paths: ArmPath | Unreachable) -> ArmPath | Unreachable:
