@@ -122,6 +122,6 @@ def _widened(
     middle, ahead = floor_distance(here, point), point - (here.x, here.y, point[2])
     if middle == 0.0:
         return interval
-    by_way = _SIGMAS_95 * math.sqrt(present.way_variance_along(ahead / middle))
+    by_way = _SIGMAS_95 * present.way_sd_along(ahead / middle)
     low, high = interval
     return max(0.0, middle - math.hypot(middle - low, by_way)), middle + math.hypot(high - middle, by_way)
