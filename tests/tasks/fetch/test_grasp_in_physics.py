@@ -60,8 +60,8 @@ def chain_instead_of_sizes(description: RobotDescription) -> RobotDescription:
 
 @dataclass
 class Grasp:
-    """A scripted grasp of a thing of this width and height [m] at `place` in the base frame (2,) [m], taken to
-    be `off` (3,) [m] from there: farther, to the left, higher.
+    """A scripted grasp of a thing of this width and height [m] at `place` in the base frame (2,) [m], taken
+    to be `off` (3,) [m] from there: farther, to the left, higher.
     """
 
     width: float
