@@ -62,11 +62,6 @@ class CameraErrors:
         """True where the first camera has errors."""
         return bool(self.by_normal[0].any())
 
-    @cached_property
-    def stacked(self) -> FloatArray:
-        """The errors of the poses per unit normal, transposed and one below the other (k, 6n)."""
-        return self.by_normal.reshape(-1, self.by_normal.shape[2]).T
-
 
 def camera_errors(
     observations: Sequence[Observation],

@@ -5,11 +5,11 @@ from functools import cached_property
 
 import numpy as np
 
-from tapreach.estimation.camera_matrices import CameraMatrices
+from tapreach.estimation.camera_matrices import CameraMatrices, homogeneous_points
 from tapreach.estimation.map_solver import Solution
 from tapreach.estimation.motion_prior import CameraErrors
 from tapreach.estimation.small_rotations import backward_rotations, cross_matrices
-from tapreach.estimation.view_model import ViewModel, homogeneous_points
+from tapreach.estimation.view_model import ViewModel
 from tapreach.geometry.finite import FloatArray
 
 _TARGET_COLUMNS = [0, 1, 3]
@@ -94,7 +94,7 @@ def _in_first(cameras: CameraMatrices, x: FloatArray) -> _Place:
     homogeneous = homogeneous_points(x[None])
     shift, forth = (np.zeros(3), np.eye(3)) if cameras.first is None else (each[0] for each in cameras.first)
     matrix = np.column_stack([forth, shift])
-    return _dehomogenised(matrix, cameras.in_first_by_normals(homogeneous)[0], homogeneous[0])
+    return _dehomogenised(matrix, cameras.in_first_by_normals(x[None, :3])[0], homogeneous[0])
 
 
 def _in_last(cameras: CameraMatrices, x: FloatArray) -> _Place:
@@ -102,7 +102,7 @@ def _in_last(cameras: CameraMatrices, x: FloatArray) -> _Place:
     if cameras.first is None:
         cameras = cameras.last()
     points = cameras.matrices @ homogeneous[0]
-    by_normals = cameras.by_normals(_IDENTITY, points, homogeneous)
+    by_normals = cameras.by_normals(_IDENTITY, points, x[None, :3])
     return _dehomogenised(cameras.matrices[0, -1], by_normals[0, -1], homogeneous[0])
 
 

@@ -30,12 +30,14 @@ def cross_matrices(vectors: FloatArray) -> FloatArray:
 
 def backward_rotations(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return exp(-turn) and the right Jacobian of exp at turn, (..., 3, 3) each, for turns (..., 3) [rad]."""
-    parts = np.empty((*turns.shape[:-1], 3, 3, 3))
-    parts[..., 0, :, :] = _IDENTITY
-    parts[..., 1, :, :] = cross = cross_matrices(turns)
-    np.matmul(cross, cross, out=parts[..., 2, :, :])
-    shares = _shares((turns * turns).sum(axis=-1)).reshape(*turns.shape[:-1], 2, 3)
-    both = (shares @ parts.reshape(*turns.shape[:-1], 3, 9)).reshape(*turns.shape[:-1], 2, 3, 3)
+    stack = turns.shape[:-1]
+    rows = np.empty((*stack, 3, 9))
+    rows[..., 0, :] = _IDENTITY.ravel()
+    np.matmul(turns, _CROSS, out=rows[..., 1, :])
+    cross, squared = rows[..., 1, :].reshape(*stack, 3, 3), rows[..., 2, :].reshape(*stack, 3, 3)
+    np.matmul(cross, cross, out=squared)
+    shares = _shares((turns * turns).sum(axis=-1)).reshape(*stack, 2, 3)
+    both = (shares @ rows).reshape(*stack, 2, 3, 3)
     return both[..., 0, :, :], both[..., 1, :, :]
 
 

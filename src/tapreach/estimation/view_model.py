@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg.lapack import dposv
 
-from tapreach.estimation.camera_matrices import CameraMatrices, camera_matrices
+from tapreach.estimation.camera_matrices import CameraMatrices, camera_matrices, homogeneous_points
 from tapreach.estimation.linearised import Linearised
 from tapreach.estimation.motion_prior import CameraErrors
 from tapreach.estimation.observation import Observation
@@ -29,7 +29,8 @@ from tapreach.geometry.lens import NO_DISTORTION, distortion_jacobian
 _TARGET_COLUMNS = np.array([0, 1, 3])  # of a projection matrix: those of a, b and rho
 _IN_FRONT = 1e-9  # least third homogeneous coordinate of a target before a camera
 _SEEN = 0.01  # and least share of its distance from the axis: nearer to the camera's plane no lens sees it
-# A point @ _ROOM is what it has beyond that share to the right, left, below and above.
+# A point @ _ROOM is what it has beyond that share to the right, left, below and above; short of it slopes
+# overflow.
 _ROOM = np.array([[-_SEEN, _SEEN, 0.0, 0.0], [0.0, 0.0, -_SEEN, _SEEN], [1.0, 1.0, 1.0, 1.0]])
 _ONTO_PLANE, _DEPTH = np.eye(2, 3), np.array([0.0, 0.0, 1.0])
 
@@ -82,7 +83,7 @@ class ViewModel:
         """The greatest distance between two of the cameras used [m]."""
         used = self.positions if self.used == self.views else self.positions[self.is_used]
         between = used[:, None, :] - used
-        return math.sqrt(float((between * between).sum(axis=2).max()))
+        return math.sqrt(float(np.einsum("ijk,ijk->ij", between, between).max()))
 
     def on_ray(self, inverse_depths: FloatArray) -> FloatArray:
         """Return x (m, 3 + k) for targets on the ray of the first view used, and poses without errors."""
@@ -101,24 +102,19 @@ class ViewModel:
     def linearised(self, x: FloatArray) -> Linearised:
         """Return residuals over sigma at x (m, 3 + k) and their derivatives, 0 for views left out."""
         cameras = self.cameras(x)
-        homogeneous = homogeneous_points(x)
-        points = (cameras.matrices @ homogeneous[:, None, :, None])[..., 0]
-        depths, room = points[..., 2], _room(points)
-        if room.min() > _IN_FRONT:
-            is_in_front, safe = np.ones(len(x), dtype=bool), depths
-        else:
-            is_before = room > _IN_FRONT
-            is_in_front = np.all(is_before | ~self.is_used, axis=1)
-            safe = np.where(is_before & self.is_used, depths, 1.0)
-        projected = points[..., :2] / safe[..., None]
-        weights = self._used_weights / safe[..., None, None]
-        slopes = weights @ (_ONTO_PLANE - projected[..., None] * _DEPTH)
-        residuals = (self._used_weights @ (projected - self.measured)[..., None])[..., 0]
-        by_target = slopes @ cameras.matrices.take(_TARGET_COLUMNS, axis=-1)
-        by_errors = cameras.by_normals(slopes, points, homogeneous)
-        if self._by_picture is not None:
-            residuals += (self._by_picture @ x[:, None, 3:, None])[..., 0]
-            by_errors += self._by_picture
+        by_targets = cameras.matrices.take(_TARGET_COLUMNS, axis=-1)
+        points = (by_targets @ x[:, None, :3, None])[..., 0] + cameras.matrices[..., 2]
+        is_in_front, depths = self._in_front(points)
+        projected = points[..., :2] / depths[..., None]
+        weights = self._used_weights
+        slopes = weights @ (_ONTO_PLANE - projected[..., None] * _DEPTH) / depths[..., None, None]
+        residuals = (weights @ (projected - self.measured)[..., None])[..., 0]
+        by_target = slopes @ by_targets
+        by_errors = cameras.by_normals(slopes, points, x[:, :3])
+        if self.errors.by_pixel is not None:
+            by_picture = self.errors.by_pixel * (self.is_used / self.sigmas)[:, None, None]
+            residuals += (by_picture @ x[:, None, 3:, None])[..., 0]
+            by_errors += by_picture
         count, rows = len(x), 2 * self.views
         return Linearised(
             x,
@@ -137,24 +133,28 @@ class ViewModel:
 
     def _whitened(self, rows: FloatArray) -> FloatArray:
         """Return (m, 2n) or (m, 2n, c) with errors made independent."""
-        if self.whitening is None:
+        if self.correlation == 0.0 or self.whitening is None:
             return rows
         return np.asarray(rows @ self.whitening.T if rows.ndim == 2 else self.whitening @ rows)
 
-    @cached_property
-    def _by_picture(self) -> FloatArray | None:
-        """Residuals (n, 2, k) by what is wrong with the pictures, over sigma, 0 for views left out."""
-        if self.errors.by_pixel is None:
-            return None
-        return self.errors.by_pixel * (self.is_used / self.sigmas)[:, None, None]
+    def _in_front(self, points: FloatArray) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+        """Return whether all views used have the target before them (m,), and depths (m, n) to divide by.
+
+        points (m, n, 3): homogeneous, the targets in the cameras.
+        """
+        room, depths = points @ _ROOM, points[..., 2]
+        if room.min() > _IN_FRONT:
+            return np.ones(len(points), dtype=bool), depths
+        is_before = room.min(axis=-1) > _IN_FRONT
+        is_in_front = np.all(is_before | ~self.is_used, axis=1)
+        return is_in_front, np.where(is_before & self.is_used, depths, 1.0)
 
     def costs_without_pose_errors(self, starts: FloatArray) -> FloatArray:
         """Return the squared residuals over sigma (m,) of (a, b, rho) (m, 3); infinite behind a view used."""
         homogeneous = homogeneous_points(starts)
         points = (self.nominal @ homogeneous[:, None, :, None])[..., 0]
-        is_before = _room(points) > _IN_FRONT
-        is_in_front = np.all(is_before | ~self.is_used, axis=1)
-        projected = points[..., :2] / np.where(is_before, points[..., 2], 1.0)[..., None]
+        is_in_front, depths = self._in_front(points)
+        projected = points[..., :2] / depths[..., None]
         residuals = self._used_weights @ (projected - self.measured)[..., None]
         white = self._whitened(residuals.reshape(len(starts), -1))
         return np.where(is_in_front, np.sum(white * white, axis=1), np.inf)
@@ -198,18 +198,6 @@ class ViewModel:
     @cached_property
     def _used_weights(self) -> FloatArray:
         return self.weights if self.used == self.views else self.weights * self.is_used[:, None, None]
-
-
-def _room(points: FloatArray) -> FloatArray:
-    """Return how far homogeneous points (..., 3) are before where a camera can see; there slopes overflow."""
-    return np.asarray((points @ _ROOM).min(axis=-1))
-
-
-def homogeneous_points(x: FloatArray) -> FloatArray:
-    """Return equation (2), (a, b, 1, rho): (m, 4), for x (m, 3 or more)."""
-    points = np.empty((len(x), 4))
-    points[:, :2], points[:, 2], points[:, 3] = x[:, :2], 1.0, x[:, 2]
-    return points
 
 
 def view_model(
