@@ -44,6 +44,13 @@ def about(profile: SlideProfile, near_enough: float) -> SlideProfile:
     return replace(profile, tolerance=tolerance, landing_rate=BRISK, settle_ns=0)
 
 
+def slowed(base: BaseSection, share: float) -> BaseSection:
+    """Return the base as it drives near things: this share of its speeds, accelerations as they are."""
+    return base.model_copy(
+        update={"max_linear": share * base.max_linear, "max_angular": share * base.max_angular}
+    )
+
+
 class Turn:
     """Turn on the spot by `angle` [rad, left positive] from where the first odometry finds the base.
 

@@ -11,7 +11,9 @@ class ThingSize:
 
     width: across the line of sight, height: foot to top [m], with one sigma each. foot: height of its lowest
     point above the floor [m]. axis_in_world (3,): its middle, half a depth behind its front, at half its
-    height [m]; axis_cov_in_world (3, 3) [m²]. caveat: what to know of it, '' for nothing.
+    height [m]; axis_cov_in_world (3, 3) [m²]. caveat: what to know of it, '' for nothing. seen_along:
+    direction in the world of the line of sight across which the width was measured [rad]; None stands for
+    that from where the base is.
     """
 
     width: float
@@ -22,6 +24,7 @@ class ThingSize:
     axis_in_world: FloatArray
     axis_cov_in_world: FloatArray
     caveat: str = ""
+    seen_along: float | None = None
 
 
 @dataclass(frozen=True)

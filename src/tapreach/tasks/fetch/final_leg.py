@@ -1,0 +1,143 @@
+"""From some place: one turn and one straight advance to a stand before the thing, if that is free."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep, wrapped
+from tapreach.tasks.fetch.approach import NEAR_SHARE, Leg
+from tapreach.tasks.fetch.body import Body
+from tapreach.tasks.fetch.obstacle import Obstacle
+from tapreach.tasks.fetch.passage import Passage
+from tapreach.tasks.fetch.stand import LEAST_STRETCH, Stance, stances, upright
+from tapreach.tasks.fetch.thing import ThingSize
+
+NEVER_WHOLE_STRETCH = 0.25
+"""Last look before a thing that is nowhere whole in the picture [m]."""
+_WHOLE_WITHIN = 0.03
+_LEAST_LEG = 0.02
+NOT_WHOLE_SECONDS, SIDE_SECONDS, TURNED_ARM_SECONDS = 8.0, 6.0, 3.0
+"""What is worth driving longer for [s]: the whole thing in the last picture; each radian less away from the
+side that was looked at; an arm straight ahead."""
+FROM_ANOTHER_SIDE = (math.radians(30.0), math.radians(75.0))
+
+
+@dataclass(frozen=True)
+class FinalLeg:
+    """From `start`: `first` to the last look, `stretch` [m] straight on to stand by `stance`.
+
+    cost: seconds of driving, and what else speaks against it in seconds.
+    """
+
+    start: PlanarPose
+    first: PlanarStep
+    stretch: float
+    stance: Stance
+    is_whole: bool
+    side: float
+    cost: float
+
+    @property
+    def last_look(self) -> PlanarPose:
+        """Where the thing is looked at for the last time."""
+        return self.start.after(self.first)
+
+    @property
+    def stand(self) -> PlanarPose:
+        """Where it is gripped from."""
+        return self.last_look.after(PlanarStep(0.0, self.stretch))
+
+
+@dataclass(frozen=True)
+class Blocked:
+    """Why not: what is in the way of 'turn', 'way' or 'claw'; nothing is where the thing is too 'near' by
+    `missing` [m], or the `side` is not one that was asked for.
+    """
+
+    of: str
+    by: Obstacle | None
+    missing: float = 0.0
+
+
+@dataclass(frozen=True)
+class Goal:
+    """The thing in the frame of the base at the start: middle (2,) [m].
+
+    world_heading: of that base in the world [rad]. from_another_side: only stands beside the line of sight.
+    """
+
+    size: ThingSize
+    middle: FloatArray
+    body: Body
+    passage: Passage
+    world_heading: float = 0.0
+    from_another_side: bool = False
+
+    @cached_property
+    def seen_along(self) -> float:
+        """Direction of the line of sight across which the width is known [rad]."""
+        if self.size.seen_along is not None:
+            return self.size.seen_along - self.world_heading
+        return math.atan2(self.middle[1], self.middle[0])
+
+    @cached_property
+    def stances(self) -> tuple[Stance, ...]:
+        """All ways of standing before it, the arm straight ahead first."""
+        return tuple(stances(self.size, self.body.claw, self.body.sight))
+
+    def final_legs(self, start: PlanarPose) -> list[FinalLeg | Blocked]:
+        """Return for each stance the legs from `start`, or why not."""
+        return [self.final_leg(start, stance) for stance in self.stances]
+
+    def sees(self, poses: tuple[PlanarPose, ...]) -> bool:
+        """Tell whether the thing's middle is in the picture at both poses."""
+        place = (*self.middle, self.size.foot + self.size.height / 2.0)
+        return all(self.body.sight.is_in_picture(place, pose) for pose in poses)
+
+    def seen_from(self, pose: PlanarPose) -> tuple[float, float] | None:
+        """Return from which to which height its front is in the picture [m]; None for nothing of it."""
+        return self.body.sight.seen_heights(upright(self.size, self.middle), pose)
+
+    def final_leg(self, start: PlanarPose, stance: Stance) -> FinalLeg | Blocked:
+        """Return the legs from `start` to stand by `stance`, or why not."""
+        step = stance.approach_from(start, self.middle)
+        least = LEAST_STRETCH if stance.stretch is None else min(stance.stretch, LEAST_STRETCH)
+        if step is None or step.advance < least:
+            distance = math.hypot(self.middle[0] - start.x, self.middle[1] - start.y)
+            return Blocked("near", None, float(np.hypot(*stance.thing_in_base)) + least - distance)
+        wanted = NEVER_WHOLE_STRETCH if stance.stretch is None else stance.stretch
+        stretch = min(wanted, step.advance)
+        if step.advance - stretch < _LEAST_LEG:
+            stretch = step.advance
+        first = PlanarStep(step.turn, step.advance - stretch)
+        is_whole = stance.stretch is not None and stretch >= stance.stretch - _WHOLE_WITHIN
+        stand_heading = start.heading + step.turn
+        side = wrapped(stand_heading + stance.rotation - self.seen_along)
+        cost = self._cost(first, stretch, stance, is_whole, side)
+        found = FinalLeg(start, first, stretch, stance, is_whole, side, cost)
+        return self._blocked(found) or found
+
+    def _blocked(self, found: FinalLeg) -> Blocked | None:
+        passage, turned = self.passage, found.start.after(PlanarStep(found.first.turn, 0.0))
+        if self.from_another_side and not FROM_ANOTHER_SIDE[0] <= abs(found.side) <= FROM_ANOTHER_SIDE[1]:
+            return Blocked("side", None)
+        if (by := passage.in_the_way_of_turn(found.start, found.first.turn)) is not None:
+            return Blocked("turn", by)
+        if (by := passage.in_the_way_of_advance(turned, found.first.advance)) is not None:
+            return Blocked("way", by)
+        if (by := passage.in_the_way_of_advance(found.last_look, found.stretch)) is not None:
+            return Blocked("way", by)
+        if (by := passage.in_the_way_of_claw(found.last_look, found.stand, found.stance)) is not None:
+            return Blocked("claw", by)
+        return None
+
+    def _cost(self, first: PlanarStep, stretch: float, stance: Stance, is_whole: bool, side: float) -> float:
+        base = self.body.base
+        seconds = Leg(first, 1.0, True).seconds(base)
+        seconds += Leg(PlanarStep(0.0, stretch), NEAR_SHARE, True).seconds(base)
+        seconds += 0.0 if is_whole else NOT_WHOLE_SECONDS
+        seconds += TURNED_ARM_SECONDS * float(stance.rotation != 0.0)
+        return seconds + (0.0 if self.from_another_side else SIDE_SECONDS * abs(side))

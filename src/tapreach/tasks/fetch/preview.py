@@ -1,0 +1,198 @@
+"""Before anything moves: can this be fetched, if not why and what would help, and how it would be done.
+
+A pure function of the thing, the other known things, the robot's pose and its file.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tapreach.geometry.finite import FloatArray, finite_array
+from tapreach.geometry.gaussian import require_covariance
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.fetch.approach import Approach, NoWay
+from tapreach.tasks.fetch.approach_plan import plan_approach
+from tapreach.tasks.fetch.body import Body
+from tapreach.tasks.fetch.obstacle import Obstacle, out_of
+from tapreach.tasks.fetch.reach import Judgement, Verdict, judge
+from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
+
+SUPPOSED_WIDTH, SUPPOSED_HEIGHT = 0.06, 0.10
+"""What is approached to be measured is supposed to be so large [m]."""
+SIDE_DEPTH = 0.4
+"""One sigma of how much deeper or less deep than wide a thing is, as a share of its width."""
+_PLACE_SHARE = 0.25
+"""A place known worse than this share of its distance (two sigmas) is not driven up to as it is."""
+_SURE = 2.0
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """What is to be drawn of the grasp, in the world [m].
+
+    tip_before, tip (3,): the gripping point before the arm goes out, and when it grips. fingers: inner edge
+    of the left and the right finger (2, 3) each, wrist side first, while the claw is open. opening [m].
+    """
+
+    tip_before: FloatArray
+    tip: FloatArray
+    fingers: tuple[FloatArray, FloatArray]
+    opening: float
+
+
+@dataclass(frozen=True)
+class ReachPreview:
+    """Whether the thing can be fetched, why, and what would help ('' for nothing).
+
+    UNSURE with an approach: driving it shows; the verdict at its last look counts. approach and grasp are
+    None where there is nothing to show. size: what was planned for, supposed where `is_supposed`.
+    """
+
+    verdict: Verdict
+    reason: str
+    advice: str
+    size: ThingSize | None = None
+    is_supposed: bool = False
+    approach: Approach | None = None
+    grasp: Grasp | None = None
+
+    @property
+    def path(self) -> tuple[PlanarPose, ...]:
+        """Base poses world_from_base from the start to the stand; none without a way."""
+        return () if self.approach is None else self.approach.path
+
+    @property
+    def driving_seconds(self) -> float:
+        """Expected time of driving [s]; 0 without a way."""
+        return 0.0 if self.approach is None else self.approach.seconds
+
+
+def preview(
+    thing: Thing,
+    others: Sequence[Obstacle],
+    world_from_base: PlanarPose,
+    description: RobotDescription,
+    *,
+    free_behind: float = 0.0,
+    is_last_look: bool = False,
+) -> ReachPreview:
+    """Return whether and how the robot, standing at `world_from_base`, can fetch the thing.
+
+    others: what must not be touched, in the world. free_behind: how far straight back the floor is known to
+    be free [m]. is_last_look: the thing will not be measured better: widths count as they are, and what
+    cannot be told then is a no. Raises InputError for values that are not finite, and for what is no
+    covariance.
+    """
+    finite_array("point_in_world", thing.point_in_world, (3,))
+    require_covariance("point_cov_in_world", thing.point_cov_in_world, 3)
+    body = Body.of(description)
+    if isinstance(thing.size, NoSize):
+        found = _unmeasured(thing, thing.size, others, world_from_base, body, free_behind)
+    else:
+        found = _measured(thing.size, others, world_from_base, body, free_behind, is_last_look)
+    if is_last_look and found.verdict is Verdict.UNSURE:
+        return replace(found, verdict=Verdict.NO)
+    return found
+
+
+def supposed_size(thing: Thing, world_from_base: PlanarPose) -> ThingSize:
+    """Return what a thing of unknown size is taken for until it is measured: standing on the floor."""
+    point = np.asarray(thing.point_in_world, dtype=np.float64)
+    off = point[:2] - [world_from_base.x, world_from_base.y]
+    behind = SUPPOSED_WIDTH / 2.0 * off / max(float(np.hypot(*off)), 1e-9)
+    height = max(SUPPOSED_HEIGHT, 1.2 * float(point[2]))
+    axis = np.array([*(point[:2] + behind), height / 2.0])
+    width_sd, height_sd = SIDE_DEPTH * SUPPOSED_WIDTH, SIDE_DEPTH * height
+    cov = np.asarray(thing.point_cov_in_world, dtype=np.float64)
+    return ThingSize(SUPPOSED_WIDTH, width_sd, height, height_sd, 0.0, axis, cov, "its size is supposed")
+
+
+def _unmeasured(
+    thing: Thing,
+    why: NoSize,
+    others: Sequence[Obstacle],
+    world_from_base: PlanarPose,
+    body: Body,
+    free_behind: float,
+) -> ReachPreview:
+    size = supposed_size(thing, world_from_base)
+    judged = judge(size, body.claw)
+    if judged.verdict is Verdict.NO:
+        return ReachPreview(Verdict.NO, judged.reason, judged.advice, size, True)
+    way = plan_approach(size, others, world_from_base, body, free_behind)
+    if isinstance(way, NoWay):
+        return ReachPreview(Verdict.NO, way.reason, way.advice, size, True)
+    reason = f"its size is not known: {why.reason}"
+    return ReachPreview(Verdict.UNSURE, reason, "drive nearer, or draw a box around it", size, True, way)
+
+
+def _measured(
+    size: ThingSize,
+    others: Sequence[Obstacle],
+    world_from_base: PlanarPose,
+    body: Body,
+    free_behind: float,
+    is_last_look: bool,
+) -> ReachPreview:
+    finite_array("axis_in_world", size.axis_in_world, (3,))
+    require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
+    judged = judge(size, body.claw, is_last_look)
+    if judged.grip is None and not judged.from_another_side:
+        return ReachPreview(judged.verdict, judged.reason, judged.advice, size)
+    way = plan_approach(size, others, world_from_base, body, free_behind, judged.from_another_side)
+    if isinstance(way, NoWay):
+        return _without_way(way, judged, size)
+    judged = _from_side(judged, size, way.side, body, is_last_look)
+    judged = _placed(judged, size, world_from_base)
+    reason = f"{way.in_words()}. {judged.reason}"
+    return ReachPreview(judged.verdict, reason, judged.advice, size, False, way, grasp_in_world(way, body))
+
+
+def _without_way(way: NoWay, judged: Judgement, size: ThingSize) -> ReachPreview:
+    if judged.from_another_side:
+        return ReachPreview(Verdict.NO, f"{judged.reason}, and {way.reason}", way.advice, size)
+    return ReachPreview(Verdict.NO, way.reason, way.advice, size)
+
+
+def _from_side(judged: Judgement, size: ThingSize, side: float, body: Body, is_last_look: bool) -> Judgement:
+    """Judge the width as the claw will find it: at an angle to the line of sight it is partly supposed."""
+    if judged.verdict is not Verdict.YES or is_last_look:
+        return judged
+    supposed = SIDE_DEPTH * size.width * min(1.0, abs(math.sin(side)))
+    again = judge(replace(size, width_sd=math.hypot(size.width_sd, supposed)), body.claw)
+    if again.verdict is Verdict.YES:
+        return judged
+    words = f"{judged.reason}; from the side where it is gripped its width is not known"
+    return replace(judged, verdict=Verdict.UNSURE, reason=words, advice="look at it from there")
+
+
+def _placed(judged: Judgement, size: ThingSize, world_from_base: PlanarPose) -> Judgement:
+    """Doubt what is known too badly to drive up to it."""
+    off = np.asarray(size.axis_in_world)[:2] - [world_from_base.x, world_from_base.y]
+    cov = np.asarray(size.axis_cov_in_world)[:2, :2]
+    sd, distance = math.sqrt(max(float(np.linalg.eigvalsh(cov)[-1]), 0.0)), float(np.hypot(*off))
+    if judged.verdict is not Verdict.YES or _SURE * sd <= _PLACE_SHARE * distance:
+        return judged
+    words = f"its place is known to ±{100.0 * _SURE * sd:.0f} cm only"
+    return replace(judged, verdict=Verdict.UNSURE, reason=words, advice="locate it from farther apart views")
+
+
+def grasp_in_world(way: Approach, body: Body) -> Grasp:
+    """Return what is to be drawn of the grasp at the end of the way."""
+    before, tip = way.stance.tips(body.claw)
+    c, s = math.cos(way.stance.rotation), math.sin(way.stance.rotation)
+    ahead, left = np.array([c, s, 0.0]), np.array([-s, c, 0.0])
+    beyond, half = body.claw.beyond, way.stance.grip.opening / 2.0
+    ends = np.array([tip - beyond * ahead, tip + beyond * ahead])
+    fingers = ends + half * left, ends - half * left
+    opening = way.stance.grip.opening
+    left_finger, right_finger = (_in_world(way.stand, finger) for finger in fingers)
+    before, tip = (_in_world(way.stand, point[None])[0] for point in (before, tip))
+    return Grasp(before, tip, (left_finger, right_finger), opening)
+
+
+def _in_world(stand: PlanarPose, points_in_base: FloatArray) -> FloatArray:
+    return np.column_stack([out_of(stand, points_in_base[:, :2]), points_in_base[:, 2]])

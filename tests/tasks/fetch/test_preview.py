@@ -1,0 +1,126 @@
+"""The preview: verdict, reason, what would help, and what is to be drawn."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tapreach.errors import InputError
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.tasks.fetch.preview import preview, supposed_size
+from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
+from tasks.fetch.worlds import ROBOT, obstacle_at, thing_at
+
+HERE = PlanarPose(0.4, -0.3, 0.7)
+
+
+def ahead(distance: float, left: float = 0.0, **size: float) -> Thing:
+    there = HERE.compose(PlanarPose(distance, left))
+    return thing_at(there.x, there.y, **size)
+
+
+def test_thing_that_can_be_fetched_is_shown_with_its_way_and_grasp():
+    thing = ahead(1.5, 0.2)
+    found = preview(thing, [], HERE, ROBOT)
+    assert found.verdict is Verdict.YES
+    assert found.path[0] == HERE
+    assert 5.0 < found.driving_seconds < 20.0
+    assert found.grasp is not None
+    assert isinstance(thing.size, ThingSize)
+    np.testing.assert_allclose(found.grasp.tip[:2], thing.size.axis_in_world[:2], atol=1e-9)
+    assert "its weight is not known" in found.reason
+
+
+def test_fingers_stand_on_both_sides_of_the_thing():
+    thing = ahead(1.2, width=0.04)
+    grasp = preview(thing, [], HERE, ROBOT).grasp
+    assert grasp is not None
+    left, right = grasp.fingers
+    np.testing.assert_allclose(np.linalg.norm(left - right, axis=1), grasp.opening)
+    np.testing.assert_allclose((left + right).mean(axis=0) / 2.0, grasp.tip, atol=1e-9)
+    pointing = left[1] - left[0]
+    np.testing.assert_allclose(np.cross(pointing, grasp.tip - grasp.tip_before), 0.0, atol=1e-9)
+    assert np.dot(pointing, grasp.tip - grasp.tip_before) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("size", "reason"),
+    [
+        ({"width": 0.2}, "127 mm too wide for the claw"),
+        ({"foot": 0.9}, "too high: the claw reaches"),
+        ({"height": 0.005, "height_sd": 0.001}, "too flat"),
+    ],
+)
+def test_what_cannot_be_gripped_has_no_way(size, reason):
+    found = preview(ahead(1.5, **size), [], HERE, ROBOT)
+    assert found.verdict is Verdict.NO
+    assert reason in found.reason
+    assert found.path == ()
+    assert found.driving_seconds == 0.0
+
+
+def test_thing_that_is_hemmed_in_is_refused_with_what_hems_it_in():
+    ring = [
+        HERE.compose(PlanarPose(1.5 + 0.3 * math.cos(a), 0.3 * math.sin(a))) for a in np.arange(8) * 0.785
+    ]
+    boxes = [obstacle_at(f"box {i}", pose.x, pose.y, 0.1) for i, pose in enumerate(ring)]
+    found = preview(ahead(1.5), boxes, HERE, ROBOT)
+    assert found.verdict is Verdict.NO
+    assert "stands behind box" in found.reason
+
+
+def test_thing_too_wide_over_its_corner_is_looked_at_from_another_side():
+    found = preview(ahead(1.5, width=0.085), [], HERE, ROBOT)
+    assert found.verdict is Verdict.UNSURE
+    assert "from another side" in found.advice
+    assert found.approach is not None
+    assert abs(found.approach.side) >= math.radians(30.0)
+
+
+def test_doubt_at_the_last_look_is_a_no():
+    standing = ahead(0.4, -0.045, foot=0.1)
+    assert preview(standing, [], HERE, ROBOT).verdict is Verdict.UNSURE
+    assert preview(standing, [], HERE, ROBOT, is_last_look=True).verdict is Verdict.NO
+
+
+def test_width_from_a_side_that_was_not_seen_is_a_doubt():
+    box = HERE.compose(PlanarPose(0.8, 0.0))
+    found = preview(ahead(1.5, width=0.06), [obstacle_at("the box", box.x, box.y, 0.2)], HERE, ROBOT)
+    assert found.verdict is Verdict.UNSURE
+    assert "from the side where it is gripped" in found.reason
+
+
+def test_place_that_is_hardly_known_is_a_doubt():
+    found = preview(ahead(1.5, place_sd=0.4), [], HERE, ROBOT)
+    assert found.verdict is Verdict.UNSURE
+    assert "±80 cm" in found.reason
+
+
+def test_thing_of_unknown_size_is_approached_as_supposed():
+    known = ahead(1.5)
+    thing = Thing(known.point_in_world, known.point_cov_in_world, NoSize("it has no clear edges"))
+    found = preview(thing, [], HERE, ROBOT)
+    assert found.verdict is Verdict.UNSURE
+    assert "it has no clear edges" in found.reason
+    assert found.is_supposed
+    assert found.approach is not None
+    assert found.grasp is None
+
+
+def test_supposed_size_stands_on_the_floor_behind_the_tapped_place():
+    known = ahead(1.0)
+    thing = Thing(known.point_in_world, known.point_cov_in_world, NoSize("dark"))
+    size = supposed_size(thing, HERE)
+    off = size.axis_in_world[:2] - thing.point_in_world[:2]
+    assert np.linalg.norm(off) == pytest.approx(size.width / 2.0)
+    assert math.atan2(off[1], off[0]) == pytest.approx(HERE.heading)
+    assert size.foot == 0.0
+
+
+def test_place_that_is_no_number_is_refused():
+    thing = ahead(1.0)
+    broken = replace(thing, point_in_world=np.array([math.nan, 0.0, 0.0]))
+    with pytest.raises(InputError):
+        preview(broken, [], HERE, ROBOT)

@@ -1,0 +1,92 @@
+"""Whether a thing can be gripped: margins by what is not known, and refusals by name."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tapreach.tasks.fetch.claw_room import Claw
+from tapreach.tasks.fetch.reach import CLAW_SPARE, LEAST_ROOM, Verdict, grip_for, judge
+from tasks.fetch.worlds import BODY, ROBOT, size_at
+
+CLAW = BODY.claw
+
+
+@pytest.mark.parametrize(
+    ("size", "verdict", "reason", "advice"),
+    [
+        ({"width": 0.101, "width_sd": 0.001}, "no", "28 mm too wide for the claw: it is 101 mm wide", ""),
+        ({"width": 0.085}, "unsure", "12 mm too wide for the claw as seen from here", "from another side"),
+        (
+            {"width": 0.06, "width_sd": 0.007},
+            "unsure",
+            "may be too wide: 60 mm ± 14 mm",
+            "known to ±14 mm only",
+        ),
+        ({"width": 0.07, "width_sd": 0.0005}, "unsure", "fits the claw barely", ""),
+        ({"foot": 0.4}, "no", "too high: the claw reaches 2", "bring it lower"),
+        ({"foot": 0.3, "height_sd": 0.03}, "unsure", "may be too high", "known to ±60 mm only"),
+        ({"foot": 0.1}, "unsure", "hangs, or stands on something", "on the floor"),
+        ({"height": 0.008, "height_sd": 0.001}, "no", "too flat: its top is 8 mm above the floor", ""),
+        ({"height": 0.015, "height_sd": 0.004}, "unsure", "may be too flat", "±8 mm only"),
+        ({}, "yes", "gripped 50 mm above the floor", ""),
+    ],
+)
+def test_what_can_be_gripped_is_told_by_name(size, verdict, reason, advice):
+    judged = judge(size_at(1.0, 0.0, **size), CLAW)
+    assert judged.verdict == verdict
+    assert reason in judged.reason
+    assert advice in judged.advice
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.02, 0.12), st.floats(0.0, 0.02), st.floats(0.03, 0.25))
+def test_yes_only_with_two_sigmas_to_spare(width, width_sd, height):
+    judged = judge(size_at(1.0, 0.0, width=width, width_sd=width_sd, height=height), CLAW)
+    if judged.verdict is Verdict.YES:
+        assert width + 2.0 * width_sd <= CLAW.opens_to - CLAW_SPARE + 1e-12
+    if judged.verdict is Verdict.NO:
+        assert width - 2.0 * width_sd > CLAW.opens_to
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.02, 0.068), st.floats(0.0, 0.02), st.floats(0.0, 0.02))
+def test_knowing_the_width_better_never_makes_a_yes_a_doubt(width, more, less):
+    rough = judge(size_at(1.0, 0.0, width=width, width_sd=more + less), CLAW)
+    fine = judge(size_at(1.0, 0.0, width=width, width_sd=less), CLAW)
+    assert not (rough.verdict is Verdict.YES and fine.verdict is not Verdict.YES)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.02, 0.068), st.floats(0.03, 0.3), st.sampled_from((0.0, 0.2, -0.2, -0.4)))
+def test_arm_reaches_the_grip_and_what_it_has_to_spare(width, height, rotation):
+    grip = grip_for(size_at(1.0, 0.0, width=width, height=height), CLAW, rotation)
+    if grip is None:
+        return
+    assert grip.spare >= LEAST_ROOM
+    assert width < grip.opening <= CLAW.opens_to
+    assert CLAW.lowest <= grip.height <= max(CLAW.lowest, height)
+    assert grip.pre_grasp + CLAW.beyond + grip.half_depth < grip.ahead - grip.spare + grip.spare + 1e-9
+    for ahead in (grip.pre_grasp - 0.9 * grip.spare, grip.ahead, grip.ahead + 0.9 * grip.spare):
+        assert CLAW.fits(ahead, round(grip.height, 3), round(grip.opening, 3), rotation)
+
+
+def test_last_look_decides_by_the_width_itself():
+    doubtful = size_at(1.0, 0.0, width=0.07, width_sd=0.004)
+    assert judge(doubtful, CLAW).verdict is Verdict.UNSURE
+    assert judge(doubtful, CLAW, is_last_look=True).verdict is Verdict.YES
+    too_wide = size_at(1.0, 0.0, width=0.075, width_sd=0.004)
+    assert judge(too_wide, CLAW, is_last_look=True).verdict is Verdict.NO
+
+
+def test_room_ends_where_the_arm_ends():
+    room = CLAW.room(0.05, 0.06)
+    assert room is not None
+    assert CLAW.fits(room.nearest, 0.05, 0.06, 0.0)
+    assert CLAW.fits(room.farthest, 0.05, 0.06, 0.0)
+    assert not CLAW.fits(room.nearest - 0.001, 0.05, 0.06, 0.0)
+    assert not CLAW.fits(room.farthest + 0.001, 0.05, 0.06, 0.0)
+
+
+def test_no_room_above_what_the_arm_reaches():
+    assert CLAW.room(0.6, 0.06) is None
+    assert Claw.of(ROBOT) == CLAW
