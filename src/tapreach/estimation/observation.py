@@ -1,7 +1,7 @@
 """One sighting of the target: a pixel, the camera that saw it, and where that camera was."""
 
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -26,6 +26,8 @@ class Observation:
     camera: Camera
     world_from_base: RigidTransform
     base_from_camera: RigidTransform
+    base_matrix: FloatArray = field(init=False, repr=False, compare=False)
+    """world_from_base as (4, 4): with every new view, all that came before are asked for it again."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "pixel_sigma", positive("pixel_sigma", self.pixel_sigma))
@@ -33,13 +35,9 @@ class Observation:
         for name in ("world_from_base", "base_from_camera"):
             if not isinstance(getattr(self, name), RigidTransform):
                 raise InputError(f"{name} is a {type(getattr(self, name)).__name__}; give a RigidTransform")
+        object.__setattr__(self, "base_matrix", self.world_from_base.as_matrix())
 
-    @cached_property
-    def base_matrix(self) -> FloatArray:
-        """world_from_base as (4, 4)."""
-        return np.asarray(self.world_from_base.as_matrix(), dtype=np.float64)
-
-    @cached_property
+    @property
     def mount_matrix(self) -> FloatArray:
         """base_from_camera as (4, 4)."""
         return matrix_of_mount(self.base_from_camera)

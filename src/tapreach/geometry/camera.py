@@ -111,7 +111,9 @@ class Camera:
         Raises InputError for a pixel that the lens model cannot have imaged.
         """
         given = finite_array("pixels", pixels, (None, 2))
-        distorted = (given - [self.cx, self.cy]) / [self.fx, self.fy]
+        distorted = np.asarray((given - [self.cx, self.cy]) / [self.fx, self.fy])
+        if self.distortion == NO_DISTORTION:
+            return distorted
         ideal, found = undistort(distorted, self.distortion)
         if not np.all(found):
             u, v = given[int(np.argmin(found))]
