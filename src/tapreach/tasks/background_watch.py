@@ -1,5 +1,6 @@
 """How the base moved since a key frame, by what stands still in the pictures."""
 
+from dataclasses import replace
 from math import radians
 
 from tapreach.estimation.camera_step import camera_step
@@ -16,6 +17,9 @@ _MOVED_DISTANCE, _MOVED_ANGLE = 0.004, radians(0.3)
 """Below this the wheels know best that nothing moved."""
 _THIN = 0.45
 """A new key frame is due when less than this share of the corners is left."""
+_SEEN_DISTANCE, _SEEN_ANGLE = 0.03, radians(2.0)
+_STILL_PX = 0.5
+"""Over such a way of the base the nearer things of any room move by more than this in the picture."""
 
 
 class BackgroundWatch:
@@ -33,6 +37,7 @@ class BackgroundWatch:
         """Take this frame as the key: ways are counted from it."""
         self._tracker = BackgroundTracker(picture)
         self._key_id, self._key_pose = frame_id, world_from_base
+        self._marked_at = world_from_base
 
     @property
     def is_thin(self) -> bool:
@@ -51,6 +56,8 @@ class BackgroundWatch:
         """
         if not is_apart(self._key_pose, world_from_base, _MOVED_DISTANCE, _MOVED_ANGLE):
             return None
+        if self._stands_still(world_from_base):
+            return SeenWay(self._key_id, replace(NOTHING_SEEN, has_slipped=True), stands_still=True)
         pairs = self._tracker.pairs()
         if pairs.quality is BackgroundQuality.POOR:
             return SeenWay(self._key_id, NOTHING_SEEN, pairs.reason)
@@ -60,3 +67,12 @@ class BackgroundWatch:
         found = rotation_from_background(pairs.first, pairs.now, self._camera, step)
         reason = found.reason if found.status is BackgroundStatus.POOR else ""
         return SeenWay(self._key_id, found.knowledge, reason)
+
+    def _stands_still(self, world_from_base: PlanarPose) -> bool:
+        """Tell whether the picture has stood still while the wheels made a way that would be seen in it."""
+        if not is_apart(self._marked_at, world_from_base, _SEEN_DISTANCE, _SEEN_ANGLE):
+            return False
+        moved = self._tracker.moved_px()
+        self._tracker.mark()
+        self._marked_at = world_from_base
+        return moved is not None and moved < _STILL_PX

@@ -19,7 +19,7 @@ from tapreach.tasks.compute_worker import LENGTH, with_length
 
 T = TypeVar("T")
 
-_WARM_MODULES = ("tapreach.tasks.following", "tapreach.tasks.estimating")
+_WARM_MODULES = ("tapreach.tasks.following", "tapreach.tasks.online")
 
 # On a small machine the other cores belong to the control loop and the camera.
 _ONE_THREAD = {"OPENCV_FOR_THREADS_NUM": "1", "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}

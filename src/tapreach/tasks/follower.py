@@ -25,6 +25,7 @@ T = TypeVar("T")
 
 _RATE_OVER_NS = 40 * MS
 _SKIP_DISTANCE, _SKIP_ANGLE = 0.02, radians(2.0)
+_LEAST_KEPT = 4
 
 
 class TargetLost(TapreachError):
@@ -32,7 +33,8 @@ class TargetLost(TapreachError):
 
 
 class Follower:
-    """Sightings of one tapped place, newest last in `sightings`.
+    """Sightings of one tapped place, newest last in `sightings`; of those between which little moved one is
+    kept, beside the newest two.
 
     key: under which the tracker is kept where the computing is done. uses_background: False leaves all turns
     to the wheels.
@@ -43,7 +45,8 @@ class Follower:
         self._tap = tap
         self._key = key
         self._uses_background = uses_background
-        self._frame_id = tap.frame_id
+        self.frame_id = tap.frame_id
+        """The newest frame that was looked at."""
         self.sightings: list[Sighting] = []
         self.weakness = ""
         self.loss = ""
@@ -73,7 +76,7 @@ class Follower:
 
     async def catch_up(self) -> None:
         """Follow through the stored frames up to the newest, leaving out those between which little moved."""
-        while frames := self._worth_following(self._context.frames.since(self._frame_id)):
+        while frames := self._worth_following(self._context.frames.since(self.frame_id)):
             for frame in frames:
                 await self._follow(frame)
 
@@ -101,7 +104,7 @@ class Follower:
         """
         seen: list[Sighting] = []
         for left in reversed(range(frames)):
-            frame = await self._context.next_frame(self._frame_id)
+            frame = await self._context.next_frame(self.frame_id)
             sighting = await self._follow(frame, is_stop=left == 0)
             if sighting is not None:
                 self.sightings.pop()
@@ -114,7 +117,7 @@ class Follower:
         return self.last
 
     async def _follow_next(self, moving: asyncio.Task[Any]) -> None:
-        waiting = asyncio.ensure_future(self._context.next_frame(self._frame_id))
+        waiting = asyncio.ensure_future(self._context.next_frame(self.frame_id))
         try:
             await asyncio.wait({waiting, moving}, return_when=asyncio.FIRST_COMPLETED)
             if waiting.done():
@@ -123,15 +126,26 @@ class Follower:
             waiting.cancel()
 
     async def _follow(self, frame: Frame, is_stop: bool = False) -> Sighting | None:
-        self._frame_id = frame.frame_id
+        self.frame_id = frame.frame_id
         shot = await self._shot(frame)
         followed = await self._context.compute.call(
             following.follow, self._key, shot, self.point_in_world, is_stop
         )
         self.loss = followed.loss
         if followed.sighting is not None:
-            self.sightings.append(followed.sighting)
+            self._take(followed.sighting)
         return followed.sighting
+
+    def _take(self, sighting: Sighting) -> None:
+        self.sightings.append(sighting)
+        if len(self.sightings) > _LEAST_KEPT and self._says_little(-3):
+            del self.sightings[-3]
+
+    def _says_little(self, index: int) -> bool:
+        kept, this = self.sightings[index - 1], self.sightings[index]
+        if this.is_key or this.way is not None:
+            return False
+        return not is_apart(kept.world_from_base, this.world_from_base, _SKIP_DISTANCE, _SKIP_ANGLE)
 
     async def _shot(self, frame: Frame) -> Shot:
         world_from_base = await pose_at(self._context, frame.captured_ns)

@@ -6,7 +6,7 @@ from math import radians
 from typing import Any
 
 from tapreach.estimation.point_estimate import PointEstimate, Status
-from tapreach.geometry.planar_motion import PlanarStep
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.geometry.ray import Ray
 from tapreach.robot.clock import MS
 from tapreach.tasks.aiming import aimed
@@ -15,8 +15,9 @@ from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
-from tapreach.tasks.locate_watch import MoveWatch, is_accurate
+from tapreach.tasks.locate_watch import BLOCKED, SLIPPING, MoveWatch, is_accurate
 from tapreach.tasks.move_choice import Choice, Room, planned_move
+from tapreach.tasks.online import Seen, online_picture
 from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.sighting import Sighting, ray_of
 from tapreach.tasks.supposed_distance import supposed_distances
@@ -30,7 +31,8 @@ MOST_MOVES = 5
 MOST_DRIVEN, LONGEST_ADVANCE = 0.8, 0.5
 """Way [m] that locating may drive in all, and in one move."""
 LOOK_FRAMES = 3
-_RENEW_EVERY_NS = 90 * MS
+_RENEW_AT_LEAST_NS = 90 * MS
+"""On a machine that cannot estimate with every frame that it follows it does so as often as this."""
 _APART_DISTANCE, _APART_ANGLE = 0.05, radians(6.0)
 
 
@@ -110,8 +112,20 @@ class Locating:
         await self._look()
 
     async def _keep_up(self) -> None:
-        if self._context.clock.now_ns() - self._renewed_ns >= _RENEW_EVERY_NS:
-            await self._renew(with_advice=False)
+        """Renew the picture with the frame just followed; when the machine is behind following is first."""
+        newest = self._context.frames.newest
+        is_behind = newest is not None and newest.frame_id > self._follower.frame_id
+        now_ns = self._context.clock.now_ns()
+        if is_behind and now_ns - self._renewed_ns < _RENEW_AT_LEAST_NS:
+            return
+        self._renewed_ns = now_ns
+        seen = Seen(self._sightings(), self._follower.last, self._follower.loss, self._here)
+        picture = await self._context.compute.call(online_picture, seen, self._report)
+        if picture.estimate is not None:
+            self._estimate = picture.estimate
+        if picture.target.point_in_world is not None:
+            self._follower.point_in_world = picture.target.point_in_world
+        self._context.show_target(picture.target)
 
     async def _refine(self) -> End:
         """Move and look until there is a reason to end it."""
@@ -122,13 +136,15 @@ class Locating:
             before = self._estimate
             if not is_worthwhile(choice, before):
                 return End.NO_GAIN
-            planned = PlannedMove.of(choice, self._context.poses.newest()[1])
+            planned = PlannedMove.of(choice, self._here)
             self._say("move", 0.1 + 0.8 * move / MOST_MOVES, planned.in_words)
             await self._make(planned)
-            if self._follower.loss:
-                return End.LOST
             if is_accurate(self._estimate, self._accuracy):
                 return End.REACHED
+            if self._follower.loss:
+                return End.LOST
+            if self._cut_short in (BLOCKED, SLIPPING):
+                return End.OBSTRUCTED
             if not self._cut_short and not has_helped(before, self._estimate):
                 return End.NO_GAIN
             if self._way_left < SHORTEST_ADVANCE:
@@ -151,7 +167,7 @@ class Locating:
             self._context.show_move(None)
         if self._enough.is_set():
             await self._context.pilot.move(PlanarStep(0.0, 0.0))
-        way = planned.start.between(self._context.poses.newest()[1])
+        way = planned.start.between(self._here)
         self._driven += (way.x**2 + way.y**2) ** 0.5
         await self._look()
 
@@ -168,12 +184,11 @@ class Locating:
             moving.result()
 
     async def _refresh(self, watch: MoveWatch) -> None:
-        """Renew what is known a few times a second, and see whether the move has a purpose still."""
+        """Renew what is known, and see whether the move has a purpose still."""
         now_ns = self._context.clock.now_ns()
         if not self._follower.loss:
             self._seen_ns = now_ns
-        if now_ns - self._renewed_ns >= _RENEW_EVERY_NS:
-            await self._renew(with_advice=False)
+        await self._keep_up()
         reason = watch.reason_to_stop(self._follower.sightings, self._estimate, now_ns - self._seen_ns)
         if reason:
             self._cut_short = reason
@@ -216,6 +231,10 @@ class Locating:
         return thinned(self._stops, others, _APART_DISTANCE, _APART_ANGLE)
 
     @property
+    def _here(self) -> PlanarPose:
+        return self._context.poses.newest()[1]
+
+    @property
     def _first_ray(self) -> Ray:
         return ray_of(self._stops[0], self._context.description)
 
@@ -233,7 +252,7 @@ class Locating:
         return await self._context.compute.call(
             planned_move,
             self._sightings(),
-            self._context.poses.newest()[1],
+            self._here,
             [self._first_ray.at(distance) for distance in self._supposed_distances(seen)],
             Room(ahead, min(ahead, way_behind(self._context.poses))),
             self._accuracy,
@@ -249,21 +268,23 @@ class Locating:
         """Show why it ends and return the closing sentence."""
         found, loss = self._estimate, self._follower.loss
         if found is None or not self._is_determined:
-            return self._no_position(self._report.target(self._sightings(), found, not loss))
-        reason = closing_reason(found.relative_sd, end, self._accuracy, self._way_left, loss)
-        target = self._report.target(self._sightings(), found, not loss, reason)
+            return self._no_position(self._target(not loss))
+        reason = closing_reason(found.relative_sd, end, self._accuracy, self._way_left, loss, self._cut_short)
+        target = self._target(not loss, reason)
         self._context.show_target(target)
         return closing_sentence(target)
 
     def _no_position(self, target: Target) -> str:
         if self._driven == 0.0:
             return "no position: no move keeps this in the picture. Drive back or turn to it, and tap again"
-        return " ".join(part for part in (f"no position: {target.reason}.", target.advice) if part)
+        reason = self._cut_short if self._cut_short in (BLOCKED, SLIPPING) else target.reason
+        return " ".join(part for part in (f"no position: {reason}.", target.advice) if part)
 
     def _show(self) -> None:
-        is_following = not self._follower.loss
-        target = self._report.target(self._sightings(), self._estimate, is_following, self._follower.loss)
-        self._context.show_target(target)
+        self._context.show_target(self._target(not self._follower.loss, self._follower.loss))
+
+    def _target(self, is_following: bool, reason: str = "") -> Target:
+        return self._report.target(self._sightings(), self._estimate, is_following, reason, self._here)
 
     def _say(self, phase: str, progress: float, message: str) -> None:
         self._context.report(TaskReport(phase, progress, message))

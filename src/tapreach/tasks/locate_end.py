@@ -20,6 +20,7 @@ class End(StrEnum):
     WAY_USED_UP = "way_used_up"
     NO_MOVE = "no_move"
     LOST = "lost"
+    OBSTRUCTED = "obstructed"
 
 
 def is_worthwhile(choice: Choice, estimate: PointEstimate | None) -> bool:
@@ -44,10 +45,13 @@ def closing_sentence(target: Target) -> str:
     return f"{found}. Adviser: {target.advice}" if target.advice else found
 
 
-def closing_reason(relative_sd: float, end: End, wanted: float, way_left: float, loss: str) -> str:
+def closing_reason(
+    relative_sd: float, end: End, wanted: float, way_left: float, loss: str, obstruction: str = ""
+) -> str:
     """Return how well the range is known (one sigma) and why no more was done for it.
 
     wanted: the relative error that was. way_left [m]: what might still be driven. loss: why it was lost.
+    obstruction: what kept the robot from driving on.
     """
     known = f"range known to {_percent(relative_sd)}"
     if end is End.REACHED:
@@ -57,6 +61,7 @@ def closing_reason(relative_sd: float, end: End, wanted: float, way_left: float,
     why = {
         End.NO_GAIN: f"the {way_left:.2f} m left to drive would not help much",
         End.WAY_USED_UP: "the way it may drive is used up",
+        End.OBSTRUCTED: obstruction,
         End.NO_MOVE: "no further move keeps it in the picture",
     }[end]
     return f"{known}; {why}"

@@ -13,6 +13,10 @@ from tapreach.tasks.sighting import Sighting, ray_of
 
 EDGE = 0.035
 """A target that moves outwards this near to the picture's edge is about to be lost; share of the picture."""
+BLOCKED = "the wheels turn but the picture stands still: something blocks the robot"
+SLIPPING = "the wheels slip, by what the picture shows: something may be in the way"
+_RECENT, _SLIPS = 8, 2
+"""Of so many sightings, so many ways in a row that show a slip are no chance."""
 LOST_NS = 600 * MS
 """So long it may be out of sight, as a passing shadow or arm makes it, before driving on has no purpose."""
 
@@ -40,6 +44,8 @@ class MoveWatch:
         """Return why, '' while the move may go on. unseen_ns: how long the target has not been seen."""
         if is_accurate(estimate, self.accuracy):
             return "the wanted accuracy is reached"
+        if obstruction := _obstruction(sightings):
+            return obstruction
         if unseen_ns >= LOST_NS:
             return "the target is out of sight"
         if self.is_forward and self._is_too_near(sightings[-1], estimate):
@@ -49,10 +55,16 @@ class MoveWatch:
         return ""
 
     def _is_too_near(self, last: Sighting, estimate: PointEstimate | None) -> bool:
-        interval = estimate.range_interval_95 if estimate is not None else None
-        nearest = self.ray.at(interval[0] if interval is not None else self.nearest)
+        nearest = self.ray.at(self._nearest_by(estimate))
         camera = ray_of(last, self.description).origin
         return float(np.linalg.norm(nearest - camera)) < NEAREST
+
+    def _nearest_by(self, estimate: PointEstimate | None) -> float:
+        """Return the nearest distance left [m]; views from almost one place say less than was supposed."""
+        if estimate is None or estimate.range_interval_95 is None:
+            return self.nearest
+        least = estimate.range_interval_95[0]
+        return least if estimate.status is Status.DETERMINED else max(least, self.nearest)
 
     def _leaves_the_picture(self, before: Sighting, last: Sighting) -> bool:
         """Tell whether it would be too near to the edge in the next frame, going on as it does."""
@@ -65,3 +77,11 @@ class MoveWatch:
         size = self.description.camera.model().size
         across, down = u / size.width, v / size.height
         return min(across, down, 1.0 - across, 1.0 - down)
+
+
+def _obstruction(sightings: list[Sighting]) -> str:
+    ways = [each.way for each in sightings[-_RECENT:] if each.way is not None]
+    if ways and ways[-1].stands_still:
+        return BLOCKED
+    slipped = [way.knowledge.has_slipped for way in ways[-_SLIPS:]]
+    return SLIPPING if len(slipped) == _SLIPS and all(slipped) else ""

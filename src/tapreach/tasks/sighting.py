@@ -28,12 +28,14 @@ TAP_SIGMA = 0.3
 class SeenWay:
     """What the background says of the base's way from frame `since_id` on, and of the camera's mount.
 
-    reason: why it says nothing; '' where it does.
+    reason: why it says nothing; '' where it does. stands_still: the wheels have turned since it was last
+    asked, and the picture has not moved.
     """
 
     since_id: int
     knowledge: StepKnowledge
     reason: str = ""
+    stands_still: bool = False
 
 
 @dataclass(frozen=True, slots=True)

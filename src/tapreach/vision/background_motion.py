@@ -32,6 +32,8 @@ _FIT_REACH = 3.0
 """A place fitted to its first frame lies this near to where it was carried, or is another [px]."""
 _EPIPOLAR = 1.5
 _FEWEST = 15
+_FAR_MOVED = 90.0
+"""Percentile: what is far away or straight ahead hardly moves when the camera does."""
 
 
 class BackgroundQuality(StrEnum):
@@ -62,7 +64,7 @@ class BackgroundTracker:
         self._first = self._now = picture
         self._small = halved(picture)
         self._corners = spread_corners(self._small, masked)
-        self._places = self._corners.copy()
+        self._places = self._marked = self._corners.copy()
         self._shift = np.zeros(2, np.float32)
         self.begun_with = len(self._corners)
         """How many places there were at first."""
@@ -83,6 +85,19 @@ class BackgroundTracker:
         if np.any(is_kept):
             self._shift = np.median(places[is_kept] - self._places[is_kept], axis=0).astype(np.float32)
         self._corners, self._places = self._corners[is_kept], places[is_kept]
+        self._marked = self._marked[is_kept]
+
+    def mark(self) -> None:
+        """Count `moved_px` from the newest picture on."""
+        self._marked = self._places
+
+    def moved_px(self) -> float | None:
+        """Return how far the picture has moved since the mark: what a tenth of the places have moved at least
+        [px]. None where too few are left to tell.
+        """
+        if len(self._places) < _FEWEST:
+            return None
+        return float(np.percentile(np.linalg.norm(self._places - self._marked, axis=1), _FAR_MOVED))
 
     def pairs(self) -> BackgroundPairs:
         """Return the places in the first picture and in the newest one."""
