@@ -1,6 +1,7 @@
 """The preview: verdict, reason, what would help, and what is to be drawn."""
 
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -117,6 +118,12 @@ def test_supposed_size_stands_on_the_floor_behind_the_tapped_place():
     assert np.linalg.norm(off) == pytest.approx(size.width / 2.0)
     assert math.atan2(off[1], off[0]) == pytest.approx(HERE.heading)
     assert size.foot == 0.0
+
+
+def test_preview_travels_between_processes():
+    found = preview(ahead(1.5, 0.2), [], HERE, ROBOT)
+    there = pickle.loads(pickle.dumps(found))
+    assert (there.verdict, there.reason, there.path) == (found.verdict, found.reason, found.path)
 
 
 def test_place_that_is_no_number_is_refused():
