@@ -8,6 +8,7 @@ from tapreach.errors import TapreachError
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.depth_check import Checked
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.target_watch import Followed, Shot, TargetWatch
 from tapreach.vision.image_io import BrokenPicture, decode_gray
@@ -48,15 +49,28 @@ def follow(key: int, shot: Shot, point_in_world: FloatArray | None = None, is_st
 
     Raises TrackUnknown, and InputError for a picture of another size.
     """
-    watch = _watches.get(key)
-    if watch is None:
-        raise TrackUnknown("the followed place has been forgotten: tap it again")
+    watch = _watch(key)
     picture = decode_gray(shot.jpeg)
     if isinstance(picture, BrokenPicture):
         return Followed(None, f"the picture cannot be used: {picture.reason}")
     return watch.follow(picture, shot, point_in_world, is_stop)
 
 
+def check(key: int) -> Checked:
+    """Return what is to be believed of what was followed so far, see TargetWatch.check.
+
+    Raises TrackUnknown.
+    """
+    return _watch(key).check()
+
+
 def close_track(key: int) -> None:
     """Forget it; unknown keys do no harm."""
     _watches.pop(key, None)
+
+
+def _watch(key: int) -> TargetWatch:
+    watch = _watches.get(key)
+    if watch is None:
+        raise TrackUnknown("the followed place has been forgotten: tap it again")
+    return watch

@@ -35,15 +35,19 @@ class Straightened:
 
 
 def straightened(
-    sightings: Sequence[Sighting], description: RobotDescription, slipped_since: int | None = None
+    sightings: Sequence[Sighting],
+    description: RobotDescription,
+    slipped_since: int | None = None,
+    by_every_way: bool = False,
 ) -> Straightened:
     """Return sightings, in the order of time, with poses corrected by what was seen of the way.
 
-    slipped_since: number of the sighting from which on the wheels are not to be trusted.
+    slipped_since: number of the sighting from which on the wheels are not to be trusted. by_every_way: use
+    the shorter ways from a key too, which makes the poses on the way sure, and the mount surer than it is.
     """
     poses = [sighting.world_from_base for sighting in sightings]
     known = odometry_noise(description), description.camera.mount.base_from_camera(), mount_noise(description)
-    steps = _seen_steps(sightings)
+    steps = _seen_steps(sightings, by_every_way)
     if slipped_since is not None:
         steps.append(_unseen_slip(slipped_since, len(sightings) - 1))
     corrected = corrected_drive(poses, *known, steps)
@@ -60,7 +64,7 @@ def straightened(
     return Straightened(straight, corrected.base_from_camera, corrected.errors, reason)
 
 
-def _seen_steps(sightings: Sequence[Sighting]) -> list[SeenStep]:
+def _seen_steps(sightings: Sequence[Sighting], by_every_way: bool) -> list[SeenStep]:
     """Return what to believe of the ways seen from each key."""
     number = {sighting.frame_id: i for i, sighting in enumerate(sightings)}
     ways: dict[int, list[SeenStep]] = {}
@@ -68,11 +72,11 @@ def _seen_steps(sightings: Sequence[Sighting]) -> list[SeenStep]:
         way = sighting.way
         if way is not None and not way.reason and way.since_id in number:
             ways.setdefault(way.since_id, []).append(SeenStep(number[way.since_id], i, way.knowledge))
-    return [step for of_key in ways.values() for step in _believed(of_key)]
+    return [step for of_key in ways.values() for step in _believed(of_key, by_every_way)]
 
 
-def _believed(of_key: list[SeenStep]) -> list[SeenStep]:
-    """Return the longest way from one key: shorter ones share its errors and say nothing more.
+def _believed(of_key: list[SeenStep], by_every_way: bool) -> list[SeenStep]:
+    """Return the longest way from one key: shorter ones share its errors and say no more of the end.
 
     A slip that it alone shows may be a background that has gone or is hidden. Then the longest of the others
     is taken, and for the rest of the way neither wheels nor pictures.
@@ -80,8 +84,8 @@ def _believed(of_key: list[SeenStep]) -> list[SeenStep]:
     *others, longest = of_key
     is_alone = bool(others) and not any(other.knowledge.has_slipped for other in others)
     if not longest.knowledge.has_slipped or not is_alone:
-        return [longest]
-    return [others[-1], _unseen_slip(others[-1].second, longest.second)]
+        return [*(other for other in others if by_every_way and not other.knowledge.has_slipped), longest]
+    return [*(others if by_every_way else others[-1:]), _unseen_slip(others[-1].second, longest.second)]
 
 
 def _unseen_slip(first: int, second: int) -> SeenStep:

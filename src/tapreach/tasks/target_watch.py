@@ -10,6 +10,8 @@ from tapreach.geometry.pixel import ImageSize, Pixel
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.background_watch import BackgroundWatch
+from tapreach.tasks.depth_check import Checked
+from tapreach.tasks.depth_views import DepthViews
 from tapreach.tasks.distance_range import DistanceRange
 from tapreach.tasks.guessing import guesses_for
 from tapreach.tasks.sighting import TAP_SIGMA, SeenWay, Sighting, is_apart, ray_of
@@ -70,6 +72,8 @@ class TargetWatch:
         )
         """The newest sighting."""
         self._distances = DistanceRange(self.last, description)
+        self._views = DepthViews(picture, self.last, description)
+        self._picture = picture
 
     @property
     def weakness(self) -> str:
@@ -85,16 +89,36 @@ class TargetWatch:
         track = self._tracker.follow(picture, self._guesses(shot, point_in_world))
         if self._background is not None:
             self._background.follow(picture)
+        self._picture = picture
         loss = track.reason if track.status is TrackStatus.LOST else ""
-        if track.pixel is None or not track.pixel.is_inside(self._size):
-            return Followed(None, loss)
+        is_seen = track.pixel is not None and track.pixel.is_inside(self._size)
+        pixel = track.pixel if is_seen and track.pixel is not None else self.last.pixel
         sigma = hypot(track.sigma, shot.moved_px)
-        seen = Sighting(
-            shot.frame_id, shot.captured_ns, track.pixel, sigma, track.scale, shot.world_from_base
-        )
-        self._distances.note(seen)
-        self.last = self._with_way(seen, picture, is_stop)
-        return Followed(self.last, loss)
+        there = Sighting(shot.frame_id, shot.captured_ns, pixel, sigma, track.scale, shot.world_from_base)
+        there = self._with_way(there, picture, is_stop, is_seen)
+        self._views.keep(there, picture, shot.moved_px, is_seen, is_stop)
+        if not is_seen:
+            return Followed(None, loss)
+        self._distances.note(there)
+        self.last = there
+        return Followed(there, loss)
+
+    def check(self) -> Checked:
+        """Return what is to be believed of the sightings so far by the tapped patch itself; go on from it.
+
+        For a robot at rest: it takes longer than a frame may.
+        """
+        newest, was_seen = self._views.newest, self._views.newest.frame_id == self.last.frame_id
+        checked = self._views.check()
+        self.last = checked.sightings[-1]
+        if checked.newest is None or checked.layer is None:
+            return checked
+        if not was_seen or self.last.pixel != newest.pixel:
+            self._tracker.resume(self._picture, checked.newest, checked.layer)
+        self._distances = DistanceRange(checked.sightings[0], self._description)
+        for sighting in checked.sightings[1:]:
+            self._distances.note(sighting)
+        return checked
 
     def _guesses(self, shot: Shot, point_in_world: FloatArray | None) -> tuple[Guess, ...]:
         """Return where it may be: by its point as far as known, else by what its way leaves possible."""
@@ -107,8 +131,10 @@ class TargetWatch:
     def _distance_to(self, point_in_world: FloatArray) -> float:
         return float(np.linalg.norm(point_in_world - ray_of(self.last, self._description).origin))
 
-    def _with_way(self, seen: Sighting, picture: Gray, is_stop: bool) -> Sighting:
-        """Return the sighting with what the background says of it, which may make it the next key."""
+    def _with_way(self, seen: Sighting, picture: Gray, is_stop: bool, is_seen: bool) -> Sighting:
+        """Return the sighting with what the background says of it, which may make it the next key if the
+        place `is_seen` there.
+        """
         if self._background is None:
             return seen
         is_due = is_apart(self._measured_at, seen.world_from_base, _WAY_DISTANCE, _WAY_ANGLE)
@@ -116,7 +142,7 @@ class TargetWatch:
             return seen
         way: SeenWay | None = self._background.way_to(seen.world_from_base)
         self._measured_at = seen.world_from_base
-        is_key = is_stop or self._background.is_thin
+        is_key = is_seen and (is_stop or self._background.is_thin)
         if is_key:
             self._background.renew(picture, seen.frame_id, seen.world_from_base)
         return replace(seen, way=way, is_key=is_key)

@@ -4,7 +4,6 @@ A patch without texture in some direction says nothing there; its surroundings d
 picture to picture, so that joining them never makes the place surer than the better of the two.
 """
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -71,8 +70,3 @@ def joined(fit: Fit, start: Start) -> Fit:
     centre = start.warp[:, 2] + frame @ (ratios / (1.0 + ratios) * apart)
     own = frame @ np.diag(np.minimum(ratios, 1.0)) @ frame.T
     return replace(fit, warp=np.column_stack([fit.warp[:, :2], centre]), own=(own + own.T) / 2.0)
-
-
-def sigma_of(covariance: FloatArray) -> float:
-    """Return the root mean of the variances of the two coordinates [px]."""
-    return math.sqrt(float(np.trace(covariance)) / 2.0)

@@ -45,7 +45,10 @@ class Look:
 
     def learned(self, agreement: FloatArray) -> "Look":
         """Return the look after a picture in which the samples agreed by (n²,), 0 to 1."""
-        layer = (1.0 - _LEARNING) * self.layer + _LEARNING * agreement
+        return self.with_layer((1.0 - _LEARNING) * self.layer + _LEARNING * agreement)
+
+    def with_layer(self, layer: FloatArray) -> "Look":
+        """Return the look with another layer (n²,)."""
         return replace(self, layer=np.maximum(layer, _LEAST_LAYER))
 
 

@@ -16,8 +16,8 @@ from tapreach.errors import InputError
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize, Pixel, require_inside
 from tapreach.vision.band import Band
-from tapreach.vision.carried import Start, carried, conflict, joined, sigma_of
-from tapreach.vision.core import looseness
+from tapreach.vision.carried import Start, carried, conflict, joined
+from tapreach.vision.core import looseness, seen_from_elsewhere
 from tapreach.vision.flow import FAR, Motion, Points, corners_near, motions_between
 from tapreach.vision.image_io import Gray
 from tapreach.vision.look import Fit, Look, context_score, fit_look, later_look, tapped_look
@@ -46,12 +46,12 @@ most; each adds so much [px of the tapped frame].
 """
 _CARRIED_APART = 2.0
 """Surroundings that move farther apart in one picture cannot carry it [px of the tapped frame]."""
+_RESUMED_SIGMA = 0.5
+"""How well a place is known from which the caller has it go on [px]."""
 _MOST_FITS = 3
 """So many looks are fitted in one picture, and one more to a place found again: it must not take long."""
 _DOUBTED = 2.0
 """The sigma of a doubtful place counts so many times."""
-_LOOSE_AT_ONCE, _ALL_LOOSE = 0.1, 0.3
-"""Share of a place's looseness that counts from the first; log of the change in size at which all does."""
 _LEAST_AROUND, _MOST_AROUND = 26.0, 60.0
 """Radius [px] around the place in which corners are followed."""
 
@@ -108,6 +108,20 @@ class PatchTracker:
         if poor is not None and self._is_carried(*poor, along, band):
             return self._carry(picture, *poor)
         return self._search_for(picture, guesses, band)
+
+    def resume(self, picture: Gray, warp: Warp, layer: FloatArray) -> None:
+        """Go on from where the caller has found the place in the picture just followed.
+
+        warp: (2, 3) from the tapped patch. layer: (n²,) how surely each of its samples moves with the place,
+        0 to 1; of another size than the patch that is followed it is left out. Looks taken since are
+        forgotten: they may be of something else.
+        """
+        tapped = self._looks[0]
+        if layer.shape == tapped.layer.shape:
+            tapped = tapped.with_layer(layer)
+        self._looks = [tapped]
+        self._carried_for, self._must_prove = 0, False
+        self._move_to(picture, warp, _RESUMED_SIGMA**2 * np.eye(2))
 
     def _resume(self, picture: Gray, guesses: Sequence[Guess] | None, band: Band | None) -> Track:
         """Go on where little else is possible than the place itself; else search."""
@@ -260,9 +274,7 @@ class PatchTracker:
 
     def _sigma(self, warp: Warp, covariance: FloatArray) -> float:
         """Return one sigma [px] of a place found with `covariance` (2, 2) [px²]."""
-        seen_from_elsewhere = min(1.0, _LOOSE_AT_ONCE + abs(math.log(scale_of(warp))) / _ALL_LOOSE)
-        linear = seen_from_elsewhere * warp[:, :2]
-        return sigma_of(covariance + linear @ self._loose @ linear.T)
+        return seen_from_elsewhere(covariance, warp, self._loose)
 
     def _move_to(self, picture: Gray, warp: Warp, own: FloatArray) -> None:
         self._warp, self._own, self._picture, self._lost_for = warp, own, picture, 0
