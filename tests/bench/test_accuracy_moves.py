@@ -15,7 +15,7 @@ from tapreach.bench.accuracy_exhaustive import (
     is_kept,
     relative_sds,
 )
-from tapreach.bench.accuracy_moves import measure_moves
+from tapreach.bench.accuracy_moves import chosen_move, measure_moves
 from tapreach.bench.accuracy_plan import smoke_plan
 from tapreach.bench.accuracy_scene import (
     CAMERA,
@@ -73,6 +73,15 @@ def test_target_that_is_lost_or_hit_on_the_way_is_not_kept():
     assert is_kept(SIGHT, PlanarStep(0.1, 0.2), KEEPING)
     assert not is_kept(SIGHT, PlanarStep(0.6, 0.2), KEEPING)
     assert not is_kept(SIGHT, PlanarStep(0.1, 0.2), Keeping(0.07, 1.9))
+
+
+@pytest.mark.parametrize("views", [TWO_TAPS, ON_THE_WAY])
+def test_chosen_move_is_in_the_better_of_two_valleys(views):
+    # Low in the picture: little turn and a short way, or so much turn that the target allows a longer one.
+    sight = Sight(np.array([-0.174, 0.121, 1.0]), 1.0, 0.01)
+    step = chosen_move(sight, views)
+    (chosen,) = relative_sds(sight, views, np.array([step.turn]), np.array([step.advance]))
+    assert chosen <= 1.02 * best_move(sight, views, KEEPING)[1]
 
 
 def test_every_depth_and_protocol_is_in_the_table():

@@ -113,7 +113,7 @@ def _run(task: Task, seed: int, trials: int) -> MoveResult:
     random = generator(seed, Part.MOVES, 1000 + 100 * number + 10 * DEPTHS.index(depth) + len(views.shares))
     steps = (
         (PAPERS, TWO_TAPS),
-        (_chosen(sight, views), views),
+        (chosen_move(sight, views), views),
         (best_move(sight, views, Keeping(MARGIN, NEAREST))[0], views),
     )
     return MoveResult(
@@ -131,7 +131,8 @@ def _target(depth: float, number: int, seed: int) -> FloatArray:
             return target
 
 
-def _chosen(sight: Sight, views: Views) -> PlanarStep:
+def chosen_move(sight: Sight, views: Views) -> PlanarStep:
+    """Return what the product chooses for a target of known distance, nothing charged for the way."""
     (pixel,) = project(np.array([[*sight.target[:2], 1.0]]))
     mount = camera_mount(LEVER, PITCH)
     seen = Observation(Pixel(*pixel.tolist()), sight.pixel_sigma, CAMERA, PlanarPose().to_rigid(), mount)

@@ -1,7 +1,7 @@
 """Which move tells most about a target that must stay in the picture.
 
 About a hundred candidates are scored at once by the bound on the range that the views on the way and at the
-end would leave, over the supposed distances of the target; then some more around the best.
+end would leave, over the supposed distances of the target; then some more around the two best turns.
 """
 
 import math
@@ -22,6 +22,8 @@ Score = Callable[[FloatArray, FloatArray], FloatArray]
 """From a target (3,) and world_from_base along c moves (c, 3, 4, 4), as Grid has them, to sd(1/Z)·Z (c,)."""
 SEEN_TURN = math.radians(0.15)
 """What is left of the error of a turn [rad/√rad], [rad/√m] where the background is followed."""
+_VALLEYS = 2
+"""So many turns are refined."""
 _NOTHING = 1.0
 """What is known, as sd(1/Z)·Z, of a target for which not even the shortest advance can be made."""
 
@@ -146,17 +148,22 @@ class _Search:
     score: Score
 
     def best(self, coarse: Grid, kept: int) -> Choice | None:
-        """Return the best candidate of a grid, refined twice; None when the point `kept` forbids them all."""
-        found, grid = self._best_of(coarse, kept), coarse
-        for _ in range(2):
-            if found is None:
-                return None
-            grid = finer_grid(grid, found.step.turn, found.step.advance)
-            finer = self._best_of(grid, kept)
-            found = finer if finer is not None and finer.cost < found.cost else found
-        return found
+        """Return the best candidate of a grid, refined; None when the point `kept` forbids them all.
 
-    def _best_of(self, grid: Grid, kept: int) -> Choice | None:
+        The farthest that a turn may advance lies between the advances of the grid, so that another turn than
+        the best of the grid may be the best: it is refined about each of the two best valleys.
+        """
+        choices = [self._refined(coarse, choice, kept) for choice in self._best_of(coarse, kept)[:_VALLEYS]]
+        return min(choices, key=lambda choice: choice.cost, default=None)
+
+    def _refined(self, grid: Grid, choice: Choice, kept: int) -> Choice:
+        for _ in range(3):
+            grid = finer_grid(grid, choice.step.turn, choice.step.advance)
+            choice = min([choice, *self._best_of(grid, kept)[:1]], key=lambda each: each.cost)
+        return choice
+
+    def _best_of(self, grid: Grid, kept: int) -> list[Choice]:
+        """Return the best candidate in each valley of the turns, the best of all first."""
         relative_sds = np.array([self._relative_sds(grid, point) for point in self.points_in_world])
         useful = np.maximum(_as_far_as_possible(relative_sds), max(self.costs.good_enough, 1e-9))
         costs = (
@@ -165,15 +172,17 @@ class _Search:
             + self.costs.per_metre * np.abs(grid.advances)[None, :]
         )
         costs[~np.isfinite(relative_sds[kept])] = np.inf
-        turn, advance = np.unravel_index(int(np.argmin(costs)), costs.shape)
-        if not np.isfinite(costs[turn, advance]):
-            return None
-        return Choice(
-            PlanarStep(float(grid.turns[turn]), float(grid.advances[advance])),
-            float(relative_sds[kept, turn, advance]),
-            self._distance(self.points_in_world[kept]),
-            float(costs[turn, advance]),
-        )
+        distance = self._distance(self.points_in_world[kept])
+        return [
+            Choice(
+                PlanarStep(float(grid.turns[turn]), float(grid.advances[advance])),
+                float(relative_sds[kept, turn, advance]),
+                distance,
+                float(costs[turn, advance]),
+            )
+            for turn in _valleys(costs.min(axis=1))
+            for advance in [int(np.argmin(costs[turn]))]
+        ]
 
     def _relative_sds(self, grid: Grid, point_in_world: FloatArray) -> FloatArray:
         """Return sd(1/Z)·Z (t, a) after each candidate; infinite where the target would be lost or hit."""
@@ -188,6 +197,13 @@ class _Search:
         mount = self.description.camera.mount.base_from_camera()
         camera = (self.world_from_base.to_rigid() * mount).translation
         return float(np.linalg.norm(point_in_world - camera))
+
+
+def _valleys(costs: FloatArray) -> list[int]:
+    """Return where finite costs (t,) are no higher than beside, the lowest first."""
+    beside = np.concatenate([[np.inf], costs, [np.inf]])
+    low = np.flatnonzero(np.isfinite(costs) & (costs <= beside[:-2]) & (costs <= beside[2:]))
+    return [int(each) for each in low[np.argsort(costs[low])]]
 
 
 def _as_far_as_possible(relative_sds: FloatArray) -> FloatArray:
