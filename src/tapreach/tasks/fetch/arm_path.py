@@ -16,7 +16,7 @@ from tapreach.tasks.fetch.arm_workspace import MARGIN, ArmWorkspace, Unreachable
 SPACING = 0.01
 """Poses of a line are at most this far apart [m]."""
 JOINT_SPACING = math.radians(5.0)
-TIP_SPEED = 0.10
+TIP_SPEED = 0.15
 """[m/s]"""
 JOINT_SHARE = 0.6
 """Share of the servos' greatest speed that a path uses: what is slower than they can be stays in step."""

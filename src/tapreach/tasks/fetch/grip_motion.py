@@ -14,7 +14,7 @@ SQUEEZE = 0.010
 """The claw is sent this much narrower than the thing is [m]: its servo then pulls with nearly all it has."""
 SURE = 2.0
 """Sigmas of the width that the claw closes further, lest a thing that is narrower is held loosely."""
-LIFT_SPEED = 0.08
+LIFT_SPEED = 0.12
 """[m/s]"""
 LIFTS = (0.10, 0.08, 0.06, 0.04)
 """Ways up [m], the best first."""
