@@ -10,8 +10,8 @@ from tapreach.robot.config import RobotDescription
 from tapreach.tasks import following
 from tapreach.tasks.background_watch import BackgroundWatch
 from tapreach.tasks.compute import InlineCompute
-from tapreach.tasks.estimating import estimate
 from tapreach.tasks.guessing import guesses_for
+from tapreach.tasks.online import online_picture
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.target_watch import Followed, Shot
 from tapreach.vision.image_io import BrokenPicture, Gray, decode_gray
@@ -98,8 +98,8 @@ def replay(compute: RecordingCompute, description: RobotDescription, laps: Laps)
     for function, arguments, _ in compute.calls:
         if function is following.follow:
             laps.timed(WHOLE_FRAME, function, *arguments)
-        elif function is estimate and not arguments[2]:
-            laps.timed("estimate on the way", function, *arguments)
+        elif function is online_picture:
+            laps.timed("estimate on the way, shown", function, *arguments)
     following.close_track(opened[0])
 
 

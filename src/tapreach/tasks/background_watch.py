@@ -17,9 +17,9 @@ _MOVED_DISTANCE, _MOVED_ANGLE = 0.004, radians(0.3)
 """Below this the wheels know best that nothing moved."""
 _THIN = 0.45
 """A new key frame is due when less than this share of the corners is left."""
-_SEEN_DISTANCE, _SEEN_ANGLE = 0.03, radians(2.0)
-_STILL_PX = 0.5
-"""Over such a way of the base the nearer things of any room move by more than this in the picture."""
+_SEEN_DISTANCE, _STRAIGHT = 0.025, radians(1.0)
+_STILL_PX = 1.0
+"""Over a straight way as long as this the nearer things of a room move more than this against the others."""
 
 
 class BackgroundWatch:
@@ -69,10 +69,12 @@ class BackgroundWatch:
         return SeenWay(self._key_id, found.knowledge, reason)
 
     def _stands_still(self, world_from_base: PlanarPose) -> bool:
-        """Tell whether the picture has stood still while the wheels made a way that would be seen in it."""
-        if not is_apart(self._marked_at, world_from_base, _SEEN_DISTANCE, _SEEN_ANGLE):
-            return False
-        moved = self._tracker.moved_px()
+        """Tell whether nothing in the picture has come nearer while the wheels made a straight way.
+
+        What pushes in vain may rear up, which moves the picture as a whole.
+        """
+        way, self._marked_at = self._marked_at.between(world_from_base), world_from_base
+        parted = self._tracker.parted_px()
         self._tracker.mark()
-        self._marked_at = world_from_base
-        return moved is not None and moved < _STILL_PX
+        is_straight_way = abs(way.x) > _SEEN_DISTANCE and abs(way.heading) < _STRAIGHT
+        return is_straight_way and parted is not None and parted < _STILL_PX

@@ -33,7 +33,7 @@ _FIT_REACH = 3.0
 _EPIPOLAR = 1.5
 _FEWEST = 15
 _FAR_MOVED = 90.0
-"""Percentile: what is far away or straight ahead hardly moves when the camera does."""
+"""Percentile: what is far away hardly moves against the rest."""
 
 
 class BackgroundQuality(StrEnum):
@@ -88,16 +88,18 @@ class BackgroundTracker:
         self._marked = self._marked[is_kept]
 
     def mark(self) -> None:
-        """Count `moved_px` from the newest picture on."""
+        """Count `parted_px` from the newest picture on."""
         self._marked = self._places
 
-    def moved_px(self) -> float | None:
-        """Return how far the picture has moved since the mark: what a tenth of the places have moved at least
-        [px]. None where too few are left to tell.
+    def parted_px(self) -> float | None:
+        """Return how far places have moved apart since the mark [px]: what a tenth of them have at least
+        moved otherwise than the whole picture. None where too few are left to tell.
         """
         if len(self._places) < _FEWEST:
             return None
-        return float(np.percentile(np.linalg.norm(self._places - self._marked, axis=1), _FAR_MOVED))
+        moved = self._places - self._marked
+        apart = np.linalg.norm(moved - np.median(moved, axis=0), axis=1)
+        return float(np.percentile(apart, _FAR_MOVED))
 
     def pairs(self) -> BackgroundPairs:
         """Return the places in the first picture and in the newest one."""
