@@ -51,6 +51,8 @@ class Follower:
         self.weakness = ""
         self.loss = ""
         """Why it is not seen in the newest frame; '' while it is."""
+        self.doubt = ""
+        """Why the last check could not confirm what was followed; '' where nothing speaks against it."""
         self.point_in_world: FloatArray | None = None
         """Where the target is (3,) [m], once somebody knows it: makes for better guesses."""
 
@@ -115,6 +117,17 @@ class Follower:
         sigma = float(np.mean([each.sigma for each in seen]))
         self.sightings.append(replace(seen[-1], pixel=Pixel(float(u), float(v)), sigma=sigma))
         return self.last
+
+    async def check(self) -> None:
+        """At rest: ask whether what was followed is what was tapped, and go on with what is believed of it.
+
+        Sightings that slid are measured again or gone; a place that was lost may be found again.
+        """
+        checked = await self._context.compute.call(following.check, self._key)
+        self.sightings = list(checked.sightings)
+        self.doubt = checked.doubt
+        if self.last.frame_id == self.frame_id:
+            self.loss = ""
 
     async def _follow_next(self, moving: asyncio.Task[Any]) -> None:
         waiting = asyncio.ensure_future(self._context.next_frame(self.frame_id))

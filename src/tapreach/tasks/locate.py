@@ -207,11 +207,18 @@ class Locating:
         sighting = await self._follower.look(LOOK_FRAMES)
         if sighting is not None:
             self._stops.append(sighting)
+        await self._check()
         await self._renew(with_advice=False)
-        if sighting is None and not self._is_determined:
+        if self._follower.loss and not self._is_determined:
             raise TargetLost(
                 f"lost the tapped place: {self._follower.loss}. Tap it again, or something near it"
             )
+
+    async def _check(self) -> None:
+        """Have what was followed checked against the tapped patch."""
+        await self._follower.check()
+        stops = {self._follower.frame_id, *(stop.frame_id for stop in self._stops)}
+        self._stops = [each for each in self._follower.sightings if each.frame_id in stops]
 
     async def _renew(self, with_advice: bool) -> None:
         self._renewed_ns = self._context.clock.now_ns()
@@ -270,7 +277,8 @@ class Locating:
         if found is None or not self._is_determined:
             return self._no_position(self._target(not loss))
         reason = closing_reason(found.relative_sd, end, self._accuracy, self._way_left, loss, self._cut_short)
-        target = self._target(not loss, reason)
+        doubt = self._follower.doubt
+        target = self._target(not loss, f"{reason}; not confirmed: {doubt}" if doubt else reason)
         self._context.show_target(target)
         return closing_sentence(target)
 
