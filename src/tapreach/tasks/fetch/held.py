@@ -1,0 +1,178 @@
+"""Whether the thing is held: the claw is told to close fully and then looked at in two poses.
+
+An empty claw closes until its fingers meet; a thing keeps them apart. Whether they are apart is seen in what
+differs between two pictures with the arm in two places (vision/held.py): no colour needs to be known, and
+what lies or stands behind the claw does not move. Servos that tell where they are, are heard as well.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import pairwise
+
+import numpy as np
+
+from tapreach.estimation.arm_offsets import ArmOffsets, NoOffsets
+from tapreach.estimation.claw_sight import SightModel
+from tapreach.geometry.arm_clearance import ArmShape, Capsule, arm_capsules
+from tapreach.geometry.arm_kinematics import ArmJoints
+from tapreach.robot.config import RobotDescription
+from tapreach.robot.messages import ArmPose, ArmState
+from tapreach.tasks.fetch.arm_zero import ArmZero, frame_at_rest
+from tapreach.tasks.fetch.line_of_sight import is_hidden
+from tapreach.tasks.task import TaskContext, TaskReport
+from tapreach.vision.claw_motion import Change, change_between
+from tapreach.vision.held import AcrossClaw, claw_width
+from tapreach.vision.image_io import BrokenPicture, decode_color
+
+SURE = 7.0
+"""Log odds beyond which a verdict is given: a thousand to one."""
+BY_SERVO = 5.0
+"""What a servo that stopped short of closing adds to the log odds."""
+STOPPED_SHORT = 0.006
+"""Opening at which a claw that was told to close tells of something between its fingers [m]."""
+_LEAST_THING = 0.014
+"""Things narrower than this [m] cannot be told from nothing."""
+_AHEAD = (0.3, 0.6, 0.9)
+_UP = (0.4, 0.7, 0.95)
+"""Where across the fingers it is looked: shares of how far they reach ahead and up."""
+_STEP, _BEYOND = 0.0015, 0.008
+_VIEWS = ((0.175, 0.03), (0.18, -0.065))
+"""Where the tips are looked at: ahead and to the left of the camera [m]."""
+_VIEW_UP = 0.085
+
+
+class HeldVerdict(StrEnum):
+    """What can be said."""
+
+    HELD = "held"
+    NOT_HELD = "not_held"
+    UNSURE = "unsure"
+
+
+@dataclass(frozen=True)
+class Held:
+    """verdict, why, how far apart the fingers seem to be [m], and the log odds of something being held."""
+
+    verdict: HeldVerdict
+    reason: str
+    opening: float
+    log_odds: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeldPicture:
+    """A picture (JPEG) with base and arm at rest, servos sent to `sent`, the claw told to close."""
+
+    sent: ArmJoints
+    jpeg: bytes
+
+
+async def look_whether_held(context: TaskContext, zero: ArmZero) -> Held:
+    """Close the claw fully, look at it in two poses, and say whether there is something in it.
+
+    For a claw lifted clear of what stands on the floor, with the base at rest; about 3 s. Raises
+    MotionInterrupted when it is stopped (the claw stays closed), LinkLost when the camera falls silent.
+    """
+    if isinstance(zero.offsets, NoOffsets):
+        return _unsure(f"the claw cannot be looked at: {zero.offsets.reason}")
+    poses = view_poses(context.description, zero)
+    if len(poses) < 2:
+        return _unsure("the arm cannot show its claw to the camera in two places")
+    states: list[ArmState] = []
+    unsubscribe = context.robot.arm.subscribe(states.append)
+    pictures = []
+    try:
+        for number, sent in enumerate(poses):
+            context.report(TaskReport("verify", number / len(poses), "looking whether it is held"))
+            await context.pilot.move_arm(ArmPose(sent.rotation, sent.shoulder, sent.elbow, 0.0))
+            frame = await frame_at_rest(context)
+            pictures.append(HeldPicture(sent, frame.jpeg))
+    finally:
+        unsubscribe()
+    is_short = bool(states) and stopped_short(states[-1])
+    return await context.compute.call(held_in, tuple(pictures), zero.offsets, context.description, is_short)
+
+
+def view_poses(description: RobotDescription, zero: ArmZero) -> tuple[ArmJoints, ...]:
+    """Return what to send the servos for the two looks; fewer where the arm does not reach them."""
+    mount = description.camera.mount
+    arm = zero.seen_arm(mount.base_from_camera())
+    if arm is None:
+        return ()
+    tips = [(mount.forward + ahead, mount.left + left, _VIEW_UP) for ahead, left in _VIEWS]
+    return tuple(joints for tip in tips if (joints := arm.inverse(tip).joints) is not None)
+
+
+def stopped_short(state: ArmState) -> bool:
+    """Tell whether the claw's servo says that it stands open though it was told to close.
+
+    A servo that only repeats what it was sent never says so, and this then tells nothing.
+    """
+    return not state.is_moving and state.pose.claw - state.target.claw > STOPPED_SHORT
+
+
+def held_in(
+    pictures: Sequence[HeldPicture],
+    offsets: ArmOffsets,
+    description: RobotDescription,
+    is_short: bool = False,
+) -> Held:
+    """Return what pictures of the closed claw in different poses say; is_short: as `stopped_short` tells."""
+    decoded = [decode_color(picture.jpeg) for picture in pictures]
+    for each in decoded:
+        if isinstance(each, BrokenPicture):
+            return _unsure(f"a picture cannot be used: {each.reason}")
+    looks: list[tuple[Change, AcrossClaw]] = []
+    for (first, here), (second, there) in pairwise(zip(pictures, decoded, strict=True)):
+        assert not isinstance(here, BrokenPicture) and not isinstance(there, BrokenPicture)
+        change = change_between(here, there)
+        looks.append((change, _across(first.sent, second.sent, offsets, description)))
+        looks.append((change, _across(second.sent, first.sent, offsets, description)))
+    finger = description.arm.shape().finger_thickness
+    widest = description.arm.claw_max / 2.0 + finger
+    width = claw_width(looks, finger + 0.001, finger + _LEAST_THING / 2.0, widest)
+    opening = max(0.0, 2.0 * (width.half_width - finger))
+    return _verdict(width.log_odds + (BY_SERVO if is_short else 0.0), opening)
+
+
+def _verdict(log_odds: float, opening: float) -> Held:
+    apart = f"{1000.0 * opening:.0f} mm"
+    if log_odds >= SURE:
+        return Held(HeldVerdict.HELD, f"something keeps the fingers {apart} apart", opening, log_odds)
+    if log_odds <= -SURE:
+        return Held(HeldVerdict.NOT_HELD, "the claw closed until its fingers met", opening, log_odds)
+    reason = f"the pictures do not tell whether the fingers met or are {apart} apart"
+    return Held(HeldVerdict.UNSURE, reason, opening, log_odds)
+
+
+def _unsure(reason: str) -> Held:
+    return Held(HeldVerdict.UNSURE, reason, 0.0, 0.0)
+
+
+def _across(
+    sent: ArmJoints, other: ArmJoints, offsets: ArmOffsets, description: RobotDescription
+) -> AcrossClaw:
+    """Return the places across the claw sent to `sent`, without those that the arm hides, be it there or
+    where it was for the `other` picture.
+    """
+    shape, camera = description.arm.shape(), description.camera.model()
+    reach = description.arm.claw_max / 2.0 + shape.finger_thickness + _BEYOND
+    aside = np.arange(-reach, reach, _STEP)
+    ends = [(x * shape.finger_beyond, z * shape.hand_radius) for x in _AHEAD for z in _UP]
+    points = np.array([(x, y, z) for y in aside for x, z in ends])
+    model = SightModel(offsets.arm, offsets.filed_mount)
+    in_camera = model.in_camera(offsets.unknowns, sent, points, np.zeros(len(points)))
+    seen = camera.project(in_camera)
+    capsules = [*_links(sent, offsets, shape), *_links(other, offsets, shape)]
+    eye = np.asarray(offsets.base_from_camera.translation)
+    hidden = is_hidden(eye, np.asarray(offsets.base_from_camera.apply(in_camera)), capsules)
+    pixels = np.where((seen.is_inside & ~hidden)[:, None], seen.pixels, np.nan)
+    return AcrossClaw(aside, pixels.reshape(len(aside), len(ends), 2))
+
+
+def _links(sent: ArmJoints, offsets: ArmOffsets, shape: ArmShape) -> list[Capsule]:
+    a, b, c = (float(zero) for zero in offsets.zeros)
+    joints = ArmJoints(sent.rotation + a, sent.shoulder + b, sent.elbow + c)
+    capsules = arm_capsules(offsets.arm.skeleton(joints), 0.0, shape)
+    return [capsule for capsule in capsules if capsule.name == "arm"]
