@@ -80,6 +80,8 @@ class DepthCheck:
     def _measured(self, found: Swept, number: int, view: KeptView) -> Sighting | None:
         """Return the sighting of a view, None where the patch is not seen."""
         expected, covariance = found.warps[number], found.covariances[number]
+        if not np.all(np.isfinite(expected)):  # it would lie behind the camera
+            return None
         if view.is_seen and self._is_surely(view, expected, found.layer):
             return view.sighting
         fit = self._fit(found, number, view)
