@@ -7,12 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tapreach.bench.locate_faults import MOST_SLIP, MOUNT_SHIFT, draw_faults, robot_file
+from tapreach.bench.fault_level import LOCATING
+from tapreach.bench.kept import Kept
 from tapreach.bench.locate_figures import arm_section
-from tapreach.bench.locate_kept import keep, read_kept
 from tapreach.bench.locate_outcome import SURE_DEPTH, SURE_REGION, Outcome
 from tapreach.bench.locate_plan import Arm, scene_of
-from tapreach.bench.locate_stage import FARTHEST, NEAREST, draw_stage
+from tapreach.bench.locate_stage import draw_stage
+from tapreach.bench.places import FARTHEST, NEAREST
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.scene import scene_names
 from tapreach.errors import ConfigError
@@ -31,23 +32,23 @@ REFUSED = replace(
 
 def test_faults_have_the_size_they_say() -> None:
     rng = np.random.default_rng(4)
-    drawn = [draw_faults(SimFaults(), rng) for _ in range(400)]
+    drawn = [LOCATING.draw(SimFaults(), rng) for _ in range(400)]
     turned = [math.hypot(f.mount_pitch_deg, f.mount_yaw_deg, f.mount_roll_deg) for f in drawn]
     moved = [math.hypot(f.mount_forward, f.mount_left, f.mount_up) for f in drawn]
     assert turned == pytest.approx([1.0] * 400)
-    assert moved == pytest.approx([MOUNT_SHIFT] * 400)
+    assert moved == pytest.approx([LOCATING.mount_shift] * 400)
     assert {f.jpeg_quality for f in drawn} == {80}
     mean = np.array([(f.wheel_left_error + f.wheel_right_error) / 2 for f in drawn])
     apart = np.array([f.wheel_left_error - f.wheel_right_error for f in drawn])
-    base = robot_file(30.0).base
+    base = LOCATING.robot_file(30.0).base
     assert np.sqrt(np.mean(mean**2)) == pytest.approx(base.distance_sigma, rel=0.15)
     drift = math.degrees(float(np.sqrt(np.mean(apart**2)))) / base.track_width
     assert drift == pytest.approx(base.drift_sigma_deg_per_m, rel=0.15)
-    assert np.abs(apart).max() < 1.2 * MOST_SLIP
+    assert np.abs(apart).max() < 1.2 * LOCATING.most_slip
 
 
 def test_faults_of_a_scene_stay() -> None:
-    faults = draw_faults(SimFaults(motion_blur_ms=20.0), np.random.default_rng(1))
+    faults = LOCATING.draw(SimFaults(motion_blur_ms=20.0), np.random.default_rng(1))
     assert faults.motion_blur_ms == 20.0
 
 
@@ -63,7 +64,7 @@ def test_stage_is_the_same_again_and_shows_the_thing() -> None:
     assert (first.start, first.pixel, first.faults) == (again.start, again.pixel, again.faults)
     assert NEAREST <= first.distance <= FARTHEST
     assert first.thing in first.scene.object_names()
-    assert first.pixel.is_inside(robot_file(30.0).camera.model().size)
+    assert first.pixel.is_inside(LOCATING.robot_file(30.0).camera.model().size)
     assert asyncio.run(draw_stage(6, 6, 30.0)).start != first.start
 
 
@@ -94,17 +95,17 @@ def test_figures_of_nothing_are_not_measured() -> None:
 
 
 def test_kept_taps_are_read_again(tmp_path) -> None:
-    path = tmp_path / "new" / "taps.jsonl"
-    assert read_kept(path) == {}
-    keep(path, [ANSWER, replace(ANSWER, arm="fixed move")])
-    keep(path, [REFUSED])
-    kept = read_kept(path)
-    assert kept[3][0] == ANSWER
-    assert kept[4] == [REFUSED]
+    kept = Kept(tmp_path / "new" / "taps.jsonl", list[Outcome])
+    assert kept.read() == []
+    kept.add([ANSWER, replace(ANSWER, arm="fixed move")])
+    kept.add([REFUSED])
+    first, second = kept.read()
+    assert first[0] == ANSWER
+    assert second == [REFUSED]
 
 
 def test_file_that_holds_something_else_is_named(tmp_path) -> None:
     path = tmp_path / "other.jsonl"
     path.write_text("not json\n")
     with pytest.raises(ConfigError, match=r"other\.jsonl"):
-        read_kept(path)
+        Kept(path, list[Outcome]).read()

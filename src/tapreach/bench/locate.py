@@ -5,10 +5,10 @@ from dataclasses import replace
 from functools import partial
 
 from tapreach.bench.accuracy_plot import require_matplotlib
+from tapreach.bench.contact_sheet import write_sheet
 from tapreach.bench.figure import Figure
 from tapreach.bench.locate_figures import arm_section, beside_section
 from tapreach.bench.locate_outcome import Outcome
-from tapreach.bench.locate_pictures import write_sheet
 from tapreach.bench.locate_plan import LocatePlan
 from tapreach.bench.locate_plot import draw_taps
 from tapreach.bench.locate_taps import run_taps

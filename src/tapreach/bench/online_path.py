@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 
 from tapreach.bench.figure import Figure, at_most
-from tapreach.bench.locate_robot import running_robot
-from tapreach.bench.locate_stage import SETTLED_S, draw_stage
+from tapreach.bench.locate_stage import draw_stage
 from tapreach.bench.online_laps import LOOP, WHOLE_FRAME, Laps, RecordingCompute, Stepped, replay
+from tapreach.bench.places import SETTLED_S
 from tapreach.bench.report import Report, Section
+from tapreach.bench.running_robot import running_robot
 from tapreach.bench.series import Measurement, run_series
 from tapreach.drivers.sim.inline import InlineSimRobot
 from tapreach.robot.clock import Clock, ManualClock

@@ -21,6 +21,7 @@ from tapreach.robot.clock import MS, SECOND, ManualClock
 from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.messages import Frame, Odometry
 from tapreach.tasks.compute import InlineCompute
+from tapreach.tasks.fetch.fetch_state import FetchState
 from tapreach.tasks.runner import TaskProgress, TaskRunner
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.target import Target
@@ -29,7 +30,7 @@ from tapreach.tasks.task import Task, TaskContext
 T = TypeVar("T")
 _OPERATOR = 1
 _CAMERA_SILENCE_NS = 2 * SECOND
-_LONGEST_TASK_NS = 90 * SECOND
+_LONGEST_TASK_S = 90.0
 
 
 class WatchedCompute(InlineCompute):
@@ -92,23 +93,36 @@ class RunningRobot:
         """Let simulated time pass."""
         await self.clock.advance(round(seconds * SECOND))
 
-    async def carry_out(self, task: Task) -> TaskProgress:
-        """Run a task to its end, or for 90 s at most, and return how it ended."""
-        end_ns = self.clock.now_ns() + _LONGEST_TASK_NS
-        self.runner.start(task, _OPERATOR)
+    async def carry_out(self, task: Task, longest_s: float = _LONGEST_TASK_S) -> TaskProgress:
+        """Run a task to its end, or for `longest_s` at most, and return how it ended."""
+        end_ns = self.clock.now_ns() + round(longest_s * SECOND)
+        self.start(task)
         while self.runner.is_running:
             if self.clock.now_ns() >= end_ns:
-                self.runner.cancel(f"not done after {_LONGEST_TASK_NS // SECOND} s")
+                self.runner.cancel(f"not done after {longest_s:g} s")
             await self.clock.advance(10 * MS)
+        return self.progress
+
+    def start(self, task: Task) -> None:
+        """Start a task as the operator does; `advance` then lets it go on."""
+        self.runner.start(task, _OPERATOR)
+
+    @property
+    def progress(self) -> TaskProgress:
+        """How the newest task goes; there must be one."""
         assert self.runner.progress is not None
         return self.runner.progress
 
 
 @asynccontextmanager
-async def running_robot(robot: InlineSimRobot, clock: ManualClock) -> AsyncIterator[RunningRobot]:
+async def running_robot(
+    robot: InlineSimRobot,
+    clock: ManualClock,
+    show_fetch: Callable[[FetchState | None], None] = lambda _: None,
+) -> AsyncIterator[RunningRobot]:
     """Run everything around `robot` while the block runs, with an operator who never lets go.
 
-    Raises SetupError when nothing can draw.
+    show_fetch: hears where fetching stands. Raises SetupError when nothing can draw.
     """
     poses, frames = PoseHistory(), _Frames(robot, clock)
     robot.base.subscribe(lambda reading: _remember(poses, reading))
@@ -127,6 +141,7 @@ async def running_robot(robot: InlineSimRobot, clock: ManualClock) -> AsyncItera
         next_frame=frames.next_frame,
         report=lambda report: None,
         show_target=lambda target: setattr(running, "target", target),
+        show_fetch=show_fetch,
     )
     runner = TaskRunner(context, loop, lambda progress: None)
     running = RunningRobot(clock, robot, runner, context, compute)
