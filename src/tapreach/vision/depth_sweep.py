@@ -145,7 +145,8 @@ def _sampled(pyramid: Sequence[Gray], warps: FloatArray, half: int) -> Values:
 
 def _levels(warps: FloatArray, count: int) -> npt.NDArray[np.int_]:
     scales = np.sqrt(np.abs(np.linalg.det(warps[:, :, :2])))
-    return np.clip(np.round(np.log2(np.maximum(scales, 1.0)) - 0.2), 0, count - 1).astype(int)
+    levels = np.round(np.log2(np.maximum(scales, 1.0)) - 0.2)
+    return np.asarray(np.clip(levels, 0, count - 1), dtype=np.int_)
 
 
 def _shifts(reach: int) -> npt.NDArray[np.int_]:
