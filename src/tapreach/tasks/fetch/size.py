@@ -1,0 +1,115 @@
+"""How large the tapped thing is, from the views already taken: what moved as the thing does is cut out.
+
+One view after the other is the reference: its outline is cut out on an upright raster through the located
+point, with the parallax to the other views (vision/thing_*). Two references must agree.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from tapreach.errors import FrameError
+from tapreach.estimation.thing_size import FusedSize, agreeing, fused
+from tapreach.geometry.finite import FloatArray
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tapreach.tasks.fetch.thing_views import Seen, references, seen_from, views_of
+from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.task import TaskContext
+from tapreach.vision.thing_cut import BOUND
+
+BY_PICTURE = "by the picture"
+AT_LEAST = "at least so wide"
+_LEAST_VIEWS = 3
+_TOLD = 0.15
+"""Of what is wider [m] the size is told though its sides are not both seen."""
+_CUT = 0.3
+"""Share of the rows that the picture's edge cuts off."""
+
+
+async def size_of(context: TaskContext, located: LocatedPoint) -> ThingSize | NoSize:
+    """Return the size of a located thing from the sightings it rests on, as far as their pictures are still
+    kept.
+    """
+    jpegs: dict[int, bytes] = {}
+    for sighting in located.sightings:
+        try:
+            jpegs[sighting.frame_id] = context.frames.get(sighting.frame_id).jpeg
+        except FrameError:
+            continue
+    point, covariance = located.point_in_world, located.point_cov_in_world
+    if point is None or covariance is None:
+        return NoSize("its position is not known")
+    kept = [each for i, each in enumerate(located.sightings) if i not in located.rejected_views]
+    return await context.compute.call(
+        thing_size, point, covariance, located.relative_sd, kept, jpegs, context.description
+    )
+
+
+def thing_size(
+    point_in_world: FloatArray,
+    point_cov_in_world: FloatArray,
+    relative_sd: float,
+    sightings: Sequence[Sighting],
+    jpegs: Mapping[int, bytes],
+    description: RobotDescription,
+) -> ThingSize | NoSize:
+    """Return the size of what was followed to a located point (3,) [m], with covariance (3, 3) [m²].
+
+    relative_sd: of its distance. sightings: with their poses as now known, in the order of time. jpegs: their
+    pictures by frame id; those without one are left out.
+    """
+    views = views_of(sightings, jpegs, description, point_in_world)
+    if len(views) < _LEAST_VIEWS:
+        return NoSize(f"only {len(views)} pictures of it from different places: locate it again")
+    point_height_sd = float(np.sqrt(point_cov_in_world[2, 2]))
+    seen: list[Seen] = []
+    for reference in references(views, point_in_world):
+        found = seen_from(views, reference, point_in_world, point_height_sd)
+        if found is None:
+            continue
+        seen.append(found)
+        pair = agreeing([each.silhouette for each in seen if each.cut.is_bounded])
+        if pair:
+            return _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), "")
+    wide = [each.silhouette for each in seen if each.silhouette.width > _TOLD]
+    if wide and len(wide) == len(seen):
+        return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), AT_LEAST)
+    return NoSize(_why_not(seen))
+
+
+def _told(size: FusedSize, caveat: str) -> ThingSize:
+    words = [BY_PICTURE, caveat]
+    if size.foot > 0.0:
+        words.append(f"stands {100.0 * size.foot:.0f} cm above the floor")
+    return ThingSize(
+        size.width,
+        size.width_sd if not caveat else size.width / 2.0,
+        size.height,
+        size.height_sd,
+        size.foot,
+        size.axis_in_world,
+        size.axis_cov_in_world,
+        ", ".join(filter(None, words)),
+    )
+
+
+def _why_not(seen: Sequence[Seen]) -> str:
+    if not seen:
+        return "it is too near to the camera"
+    if sum(each.cut.is_bounded for each in seen) >= 2:
+        return "the views disagree about its outline: something may hide it, or stand close to it"
+    unclear = next((each.cut for each in seen if not each.cut.is_bounded), None)
+    if unclear is None:
+        return "only one view shows it well: locate it again from further to the side"
+    side = "left" if unclear.bounded[0] < unclear.bounded[1] else "right"
+    if max(unclear.cut_off) > _CUT:
+        return (
+            f"the picture's edge cuts it off on the {side}: look at it from where all of it is in the picture"
+        )
+    if max(unclear.bounded) < BOUND:
+        return (
+            "it lies flat on what is behind it, as a picture on a wall does, or is part of something larger"
+        )
+    return f"its {side} side cannot be told from what is beside or behind it"
