@@ -39,7 +39,7 @@ class FaultLevel:
         left, right = (self._slipping(distance, slip) for slip in rng.uniform(0.0, self.most_slip, 2))
         pitch, yaw, roll = map(float, self.mount_turn_deg * _direction(rng))
         forward, sideways, up = map(float, self.mount_shift * _direction(rng))
-        to_side = 1.0 if rng.random() < 0.5 else -1.0
+        servo = self.servo_offset_deg and math.copysign(self.servo_offset_deg, rng.random() - 0.5)
         return of_scene.merged(
             {
                 "wheel_left_error": left,
@@ -52,7 +52,7 @@ class FaultLevel:
                 "mount_left": sideways,
                 "mount_up": up,
                 "jpeg_quality": self.jpeg_quality,
-                "servo_offset_deg": to_side * self.servo_offset_deg,
+                "servo_offset_deg": servo,
                 "camera_delay_ms": self.camera_delay_ms,
                 "dropped_frames": self.dropped_frames,
             }

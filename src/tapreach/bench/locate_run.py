@@ -11,9 +11,10 @@ from tapreach.bench.locate_fixed import FixedMove, paper_range
 from tapreach.bench.locate_outcome import Outcome, region_distance
 from tapreach.bench.locate_pictures import write_glimpse
 from tapreach.bench.locate_plan import Arm, LocatePlan
-from tapreach.bench.locate_stage import Stage, draw_stage
+from tapreach.bench.locate_stage import draw_stage
 from tapreach.bench.places import SETTLED_S, surface_at
 from tapreach.bench.running_robot import RunningRobot, running_robot
+from tapreach.bench.stage import Stage
 from tapreach.drivers.sim.inline import InlineSimRobot
 from tapreach.drivers.sim.truth import SurfacePoint, WorldTruth, ask_truth
 from tapreach.errors import SetupError

@@ -17,7 +17,7 @@ from scipy.spatial.transform import RigidTransform
 from tapreach.drivers.sim.inline import InlineSimRobot
 from tapreach.drivers.sim.scene import Scene
 from tapreach.drivers.sim.scene_checks import Solid, solid_of_object, solid_of_part
-from tapreach.drivers.sim.truth import ObjectTruth, SurfacePoint
+from tapreach.drivers.sim.truth import SurfacePoint, WorldTruth
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose
@@ -40,10 +40,20 @@ _HALF_VIEW_DEG = 26.0
 
 @dataclass(frozen=True)
 class Sought:
-    """What may be tapped: its name, and where it stands on the floor (x, y) [m]."""
+    """What may be tapped: its name, and where it stands on the floor (x, y) [m].
+
+    corners_in_world (n, 3) [m]: of a flat thing on a wall, which has no name; None for what stands.
+    """
 
     name: str
     position: tuple[float, float]
+    corners_in_world: FloatArray | None = None
+
+
+def things_of(scene: Scene) -> list[Sought]:
+    """Return all things of a scene that can be moved."""
+    named = zip(scene.object_names(), scene.objects, strict=True)
+    return [Sought(name, thing.position) for name, thing in named]
 
 
 def places(
@@ -77,25 +87,17 @@ def surface_at(robot: InlineSimRobot, pixel: Pixel, at_ns: int = 0) -> SurfacePo
     return robot.surfaces_seen(directions, at_ns)[0]
 
 
-def pixel_on(
-    thing: ObjectTruth, camera_pose: RigidTransform, robot: InlineSimRobot, rng: np.random.Generator
+def pixel_of(
+    sought: Sought, truth: WorldTruth, robot: InlineSimRobot, rng: np.random.Generator
 ) -> Pixel | None:
     """Draw a pixel that lies on the thing with all that is 4 px around it; None when none is found."""
-    corners = 0.5 * np.array(thing.size) * np.array(list(itertools.product((-1, 1), repeat=3)))
-    in_world = RigidTransform.from_matrix(np.array(thing.world_from_object)).apply(corners)
-    return pixel_among(in_world, thing.name, camera_pose, robot, rng)
-
-
-def pixel_among(
-    points_in_world: FloatArray,
-    name: str,
-    camera_pose: RigidTransform,
-    robot: InlineSimRobot,
-    rng: np.random.Generator,
-) -> Pixel | None:
-    """Draw a pixel from the box around points (n, 3) [m], on something of this name with all around it."""
+    corners = sought.corners_in_world
+    if corners is None:
+        thing = truth.object(sought.name)
+        corners = 0.5 * np.array(thing.size) * np.array(list(itertools.product((-1, 1), repeat=3)))
+        corners = RigidTransform.from_matrix(np.array(thing.world_from_object)).apply(corners)
     camera = robot.description.camera.model()
-    in_camera = camera_pose.inv().apply(points_in_world)
+    in_camera = truth.camera_pose.inv().apply(corners)
     if np.any(in_camera[:, 2] < 0.1):
         return None
     seen = camera.project(in_camera).pixels
@@ -106,7 +108,7 @@ def pixel_among(
         return None
     for u, v in rng.uniform(low, high, (_PIXELS, 2)):
         met = robot.surfaces_seen(camera.unproject(_AROUND + np.array([u, v])))
-        if all(surface is not None and surface.name == name for surface in met):
+        if all(surface is not None and surface.name == sought.name for surface in met):
             return Pixel(float(u), float(v))
     return None
 
