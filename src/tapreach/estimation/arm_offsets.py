@@ -100,7 +100,7 @@ def estimate_arm_offsets(
     for left_out in range(int(given * _MOST_LEFT_OUT) + 1):
         fit = _fitted(kept, model, camera, noise)
         if fit is None:
-            return NoOffsets("where the claw was seen lies behind the camera by the robot's file")
+            return NoOffsets("the claw was seen where this arm, before this camera, cannot bring it")
         if fit.distances.max() <= _OUTLYING:
             return _offsets(fit, model, noise, left_out)
         kept = _without(kept, int(np.argmax(fit.distances)))

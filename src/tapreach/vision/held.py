@@ -21,7 +21,7 @@ CHANGED, UNCHANGED = 0.85, 0.06
 _LEAST_LEVEL, _MOST_LEVEL = 12.0, 40.0
 _NOISES, _QUIET = 4.0, 0.2
 """Grey levels that count as a change: so many times what the quietest fifth of the picture differs by."""
-_WEIGHT = 0.35
+_WEIGHT = 0.6
 """Places a millimetre or two apart tell much the same: each counts as so much of an independent one."""
 
 

@@ -5,10 +5,8 @@ differs between two pictures with the arm in two places (vision/held.py): no col
 what lies or stands behind the claw does not move. Servos that tell where they are, are heard as well.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import pairwise
 
 import numpy as np
 
@@ -21,25 +19,27 @@ from tapreach.robot.messages import ArmPose, ArmState
 from tapreach.tasks.fetch.arm_zero import ArmZero, frame_at_rest
 from tapreach.tasks.fetch.line_of_sight import is_hidden
 from tapreach.tasks.task import TaskContext, TaskReport
-from tapreach.vision.claw_motion import Change, change_between
+from tapreach.vision.claw_motion import change_between
 from tapreach.vision.held import AcrossClaw, claw_width
 from tapreach.vision.image_io import BrokenPicture, decode_color
+from tapreach.vision.steadied import steadied
 
-SURE = 7.0
-"""Log odds beyond which a verdict is given: a thousand to one."""
+SURE = 5.0
+"""Log odds beyond which a verdict is given: a hundred and fifty to one."""
 BY_SERVO = 5.0
 """What a servo that stopped short of closing adds to the log odds."""
 STOPPED_SHORT = 0.006
 """Opening at which a claw that was told to close tells of something between its fingers [m]."""
-_LEAST_THING = 0.014
+LEAST_THING = 0.018
 """Things narrower than this [m] cannot be told from nothing."""
+_LEAST_SHARE = 0.6
+"""Of the width the thing was seen to have: the fingers are at least so far apart when they hold it."""
 _AHEAD = (0.3, 0.6, 0.9)
 _UP = (0.4, 0.7, 0.95)
 """Where across the fingers it is looked: shares of how far they reach ahead and up."""
 _STEP, _BEYOND = 0.0015, 0.008
-_VIEWS = ((0.175, 0.03), (0.18, -0.065))
-"""Where the tips are looked at: ahead and to the left of the camera [m]."""
-_VIEW_UP = 0.085
+_AWAY, _SHOWN = (0.14, -0.09, 0.17), (0.175, 0.03, 0.09)
+"""Where the tips are held away and where shown: ahead and left of the camera, above the floor [m]."""
 
 
 class HeldVerdict(StrEnum):
@@ -68,11 +68,12 @@ class HeldPicture:
     jpeg: bytes
 
 
-async def look_whether_held(context: TaskContext, zero: ArmZero) -> Held:
+async def look_whether_held(context: TaskContext, zero: ArmZero, thing_width: float = 0.0) -> Held:
     """Close the claw fully, look at it in two poses, and say whether there is something in it.
 
-    For a claw lifted clear of what stands on the floor, with the base at rest; about 3 s. Raises
-    MotionInterrupted when it is stopped (the claw stays closed), LinkLost when the camera falls silent.
+    thing_width [m]: as it was seen before, 0 for not known; knowing it makes the verdict surer. For a claw
+    lifted clear of what stands on the floor, with the base at rest; about 2 s. Raises MotionInterrupted when
+    it is stopped (the claw stays closed), LinkLost when the camera falls silent.
     """
     if isinstance(zero.offsets, NoOffsets):
         return _unsure(f"the claw cannot be looked at: {zero.offsets.reason}")
@@ -91,16 +92,18 @@ async def look_whether_held(context: TaskContext, zero: ArmZero) -> Held:
     finally:
         unsubscribe()
     is_short = bool(states) and stopped_short(states[-1])
-    return await context.compute.call(held_in, tuple(pictures), zero.offsets, context.description, is_short)
+    return await context.compute.call(
+        held_in, tuple(pictures), zero.offsets, context.description, is_short, thing_width
+    )
 
 
 def view_poses(description: RobotDescription, zero: ArmZero) -> tuple[ArmJoints, ...]:
-    """Return what to send the servos for the two looks; fewer where the arm does not reach them."""
+    """Return what to send the servos to hold the claw away and to show it; fewer where it is out of reach."""
     mount = description.camera.mount
     arm = zero.seen_arm(mount.base_from_camera())
     if arm is None:
         return ()
-    tips = [(mount.forward + ahead, mount.left + left, _VIEW_UP) for ahead, left in _VIEWS]
+    tips = [(mount.forward + ahead, mount.left + left, up) for ahead, left, up in (_AWAY, _SHOWN)]
     return tuple(joints for tip in tips if (joints := arm.inverse(tip).joints) is not None)
 
 
@@ -113,25 +116,28 @@ def stopped_short(state: ArmState) -> bool:
 
 
 def held_in(
-    pictures: Sequence[HeldPicture],
+    pictures: tuple[HeldPicture, HeldPicture],
     offsets: ArmOffsets,
     description: RobotDescription,
     is_short: bool = False,
+    thing_width: float = 0.0,
 ) -> Held:
-    """Return what pictures of the closed claw in different poses say; is_short: as `stopped_short` tells."""
+    """Return what two pictures of the closed claw say: held away, and shown to the camera (`view_poses`).
+
+    is_short: as `stopped_short` tells. thing_width [m]: as it was seen before, 0 for not known.
+    """
     decoded = [decode_color(picture.jpeg) for picture in pictures]
     for each in decoded:
         if isinstance(each, BrokenPicture):
             return _unsure(f"a picture cannot be used: {each.reason}")
-    looks: list[tuple[Change, AcrossClaw]] = []
-    for (first, here), (second, there) in pairwise(zip(pictures, decoded, strict=True)):
-        assert not isinstance(here, BrokenPicture) and not isinstance(there, BrokenPicture)
-        change = change_between(here, there)
-        looks.append((change, _across(first.sent, second.sent, offsets, description)))
-        looks.append((change, _across(second.sent, first.sent, offsets, description)))
+    away, shown = decoded
+    assert not isinstance(away, BrokenPicture) and not isinstance(shown, BrokenPicture)
+    change = change_between(shown, steadied(away, shown))
+    looks = [(change, _across(pictures[1].sent, pictures[0].sent, offsets, description))]
     finger = description.arm.shape().finger_thickness
     widest = description.arm.claw_max / 2.0 + finger
-    width = claw_width(looks, finger + 0.001, finger + _LEAST_THING / 2.0, widest)
+    least = max(LEAST_THING, _LEAST_SHARE * min(thing_width, description.arm.claw_max))
+    width = claw_width(looks, finger + 0.001, finger + least / 2.0, widest)
     opening = max(0.0, 2.0 * (width.half_width - finger))
     return _verdict(width.log_odds + (BY_SERVO if is_short else 0.0), opening)
 
