@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from tapreach.estimation.box_extent import BoxExtent
 from tapreach.estimation.thing_raster import UprightRaster
 from tapreach.geometry.finite import FloatArray
 
@@ -82,6 +83,17 @@ def silhouette(
         raster.ahead,
         raster.left,
     )
+
+
+def silhouette_of_box(extent: BoxExtent, point: FloatArray, point_height_sd: float) -> Silhouette:
+    """Return the silhouette by a drawn box, for the located `point` (3,) [m]."""
+    left_top, right_top, right_bottom, _ = extent.corners_in_world
+    left = (left_top - right_top) / np.linalg.norm(left_top - right_top)
+    ahead = np.array([left[1], -left[0], 0.0])
+    bottom = float(right_bottom[2])
+    foot = 0.0 if bottom < _ON_FLOOR + 2.0 * point_height_sd else bottom
+    leftwards = float(((left_top + right_top) / 2.0 - point) @ left)
+    return Silhouette(extent.width, leftwards, foot + extent.height, foot, _EDGE_SD, 0.0, ahead, left)
 
 
 def agreeing(seen: Sequence[Silhouette]) -> tuple[Silhouette, ...]:

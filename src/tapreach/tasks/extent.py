@@ -1,4 +1,4 @@
-"""How large a boxed target is, as the page shows it."""
+"""How large a target is, as the page shows it: by the box drawn around it, or by the pictures."""
 
 from dataclasses import dataclass
 
@@ -10,6 +10,7 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.pixel_box import PixelBox
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.sighting import Sighting, ray_of
 
 _AT_BORDER_PX = 2.0
@@ -55,6 +56,21 @@ def measured(
     if not isinstance(found, BoxExtent):
         return Extent(None, found.reason)
     return Extent(found, _cut_off(box, camera.size))
+
+
+def extent_of_thing(size: ThingSize | NoSize, seen: Sighting, description: RobotDescription) -> Extent:
+    """Return the extent of what was measured in the pictures, its corners in the plane that faces the view
+    `seen`.
+    """
+    if isinstance(size, NoSize):
+        return Extent(None, size.reason)
+    way = size.axis_in_world - ray_of(seen, description).origin
+    left = np.array([-way[1], way[0], 0.0]) / max(float(np.hypot(way[0], way[1])), 1e-6)
+    across, up = 0.5 * size.width * left, np.array([0.0, 0.0, 0.5 * size.height])
+    sides = (across + up, up - across, -across - up, across - up)
+    corners = np.stack([size.axis_in_world + side for side in sides])
+    found = BoxExtent(size.width, size.height, size.width_sd, size.height_sd, corners)
+    return Extent(found, size.caveat)
 
 
 def _cut_off(box: PixelBox, size: ImageSize) -> str:

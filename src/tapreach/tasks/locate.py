@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Coroutine
+from dataclasses import replace
 from math import radians
 from typing import Any
 
@@ -12,6 +13,9 @@ from tapreach.robot.clock import MS
 from tapreach.tasks.aiming import aimed
 from tapreach.tasks.candidate_moves import SHORTEST_ADVANCE
 from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
+from tapreach.tasks.extent import extent_of_thing
+from tapreach.tasks.fetch.size import size_of
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
@@ -82,6 +86,8 @@ class Locating:
         self._enough = asyncio.Event()
         self._cut_short = ""
         """Why the newest move was ended before it was done; '' when it was not."""
+        self.size: ThingSize | NoSize | None = None
+        """How large the thing was measured to be at the end of `run`; None before, and without a position."""
 
     @property
     def estimate(self) -> LocatedPoint | None:
@@ -101,6 +107,7 @@ class Locating:
         await self._follower.catch_up()
         end = await self._refine()
         await self._renew(with_advice=end not in (End.REACHED, End.LOST))
+        await self._measure()
         return self._conclusion(end)
 
     async def drive(self, motion: Coroutine[Any, Any, object]) -> None:
@@ -271,6 +278,12 @@ class Locating:
     def _is_determined(self) -> bool:
         return self._estimate is not None and self._estimate.status is Status.DETERMINED
 
+    async def _measure(self) -> None:
+        """Find out how large the thing is, once it is known where."""
+        if self._estimate is not None and self._is_determined:
+            self._say("measure", 0.95, "measuring it in the pictures taken")
+            self.size = await size_of(self._context, self._estimate, self._report.tap.box)
+
     def _conclusion(self, end: End) -> str:
         """Show why it ends and return the closing sentence."""
         found, loss = self._estimate, self._follower.loss
@@ -279,6 +292,9 @@ class Locating:
         reason = closing_reason(found.relative_sd, end, self._accuracy, self._way_left, loss, self._cut_short)
         doubt = self._follower.doubt
         target = self._target(not loss, f"{reason}; not confirmed: {doubt}" if doubt else reason)
+        if self.size is not None and target.extent is None:
+            extent = extent_of_thing(self.size, found.sightings[-1], self._context.description)
+            target = replace(target, extent=extent)
         self._context.show_target(target)
         return closing_sentence(target)
 

@@ -4,22 +4,26 @@ One view after the other is the reference: its outline is cut out on an upright 
 point, with the parallax to the other views (vision/thing_*). Two references must agree.
 """
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from tapreach.errors import FrameError
-from tapreach.estimation.thing_size import FusedSize, agreeing, fused
+from tapreach.estimation.thing_size import FusedSize, agreeing, fused, silhouette_of_box
 from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.pixel_box import PixelBox
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.extent import extent_of
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.fetch.thing_views import Seen, references, seen_from, views_of
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.task import TaskContext
 from tapreach.vision.thing_cut import BOUND
 
-BY_PICTURE = "by the picture"
+BY_PICTURE, BY_BOX = "by the picture", "by the box"
 AT_LEAST = "at least so wide"
 _LEAST_VIEWS = 3
 _TOLD = 0.15
@@ -28,10 +32,14 @@ _CUT = 0.3
 """Share of the rows that the picture's edge cuts off."""
 
 
-async def size_of(context: TaskContext, located: LocatedPoint) -> ThingSize | NoSize:
-    """Return the size of a located thing from the sightings it rests on, as far as their pictures are still
-    kept.
+async def size_of(
+    context: TaskContext, located: LocatedPoint, box: PixelBox | None = None
+) -> ThingSize | NoSize:
+    """Return the size of a located thing: by the box drawn around it in the first of the sightings, else from
+    all of them, as far as their pictures are still kept.
     """
+    if box is not None:
+        return boxed_size(box, located, context.description)
     jpegs: dict[int, bytes] = {}
     for sighting in located.sightings:
         try:
@@ -45,6 +53,20 @@ async def size_of(context: TaskContext, located: LocatedPoint) -> ThingSize | No
     return await context.compute.call(
         thing_size, point, covariance, located.relative_sd, kept, jpegs, context.description
     )
+
+
+def boxed_size(box: PixelBox, located: LocatedPoint, description: RobotDescription) -> ThingSize | NoSize:
+    """Return the size of what a box holds that was drawn in the first of the sightings."""
+    first, point, covariance = located.sightings[0], located.point_in_world, located.point_cov_in_world
+    extent = extent_of(box, first, located, description)
+    if extent is None or point is None or covariance is None:
+        return NoSize("its position is not known")
+    if extent.size is None:
+        return NoSize(extent.reason)
+    by_box = silhouette_of_box(extent.size, point, math.sqrt(float(covariance[2, 2])))
+    size = fused([by_box], point, covariance, located.relative_sd)
+    size = replace(size, width_sd=extent.size.width_sd, height_sd=extent.size.height_sd)
+    return _told(size, [BY_BOX, AT_LEAST if extent.reason else ""])
 
 
 def thing_size(
@@ -72,20 +94,19 @@ def thing_size(
         seen.append(found)
         pair = agreeing([each.silhouette for each in seen if each.cut.is_bounded])
         if pair:
-            return _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), "")
+            return _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE])
     wide = [each.silhouette for each in seen if each.silhouette.width > _TOLD]
     if wide and len(wide) == len(seen):
-        return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), AT_LEAST)
+        return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE, AT_LEAST])
     return NoSize(_why_not(seen))
 
 
-def _told(size: FusedSize, caveat: str) -> ThingSize:
-    words = [BY_PICTURE, caveat]
+def _told(size: FusedSize, words: list[str]) -> ThingSize:
     if size.foot > 0.0:
         words.append(f"stands {100.0 * size.foot:.0f} cm above the floor")
     return ThingSize(
         size.width,
-        size.width_sd if not caveat else size.width / 2.0,
+        size.width / 2.0 if AT_LEAST in words else size.width_sd,
         size.height,
         size.height_sd,
         size.foot,
