@@ -13,6 +13,8 @@ import { VideoSocket } from "./net/video_socket.js";
 import { Captures } from "./ui/captures.js";
 import { byId } from "./ui/dom.js";
 import { Emergency } from "./ui/emergency.js";
+import { FetchMode } from "./ui/fetch_mode.js";
+import { FetchPanel } from "./ui/fetch_panel.js";
 import { Guide } from "./ui/guide.js";
 import { Hints } from "./ui/hints.js";
 import { Lease } from "./ui/lease.js";
@@ -63,13 +65,15 @@ const hints = new Hints();
 const lease = new Lease(control, situation, toast);
 const guide = new Guide(control, toast);
 const captures = new Captures(control, toast);
+const fetchMode = new FetchMode();
+const fetchPanel = new FetchPanel(control, toast);
 const taskPanel = new TaskPanel(control, toast);
 const stepMenu = new StepMenu(arm, popovers);
 const pads = new Pads(drive, arm, situation);
 const purpose = new Purpose();
-const aim = new Aim({ socket: control, guide, purpose, overlay, boxes, playback, toast });
+const aim = new Aim({ socket: control, guide, purpose, fetchMode, overlay, boxes, playback, toast });
 new StatusBar(situation);
-new TargetCard(control, targets);
+new TargetCard(control, targets, fetchMode, toast);
 new PlaybackBar(playback);
 new Emergency(control, situation, toast);
 new Veil(situation, () => {
@@ -91,13 +95,14 @@ function drawPlan() {
   const { state, welcome } = situation.facts;
   if (!state?.odometry || !welcome || byId("card").hidden) return;
   const halfView = Math.atan(welcome.camera.width / 2 / welcome.camera.fx);
-  plan.draw(state.odometry, targets.all(), halfView, taskPanel.move);
+  plan.draw(state.odometry, targets.all(), halfView, taskPanel.move, fetchPanel.view);
 }
 
 function joinControl() {
   on(control, "link", (/** @type {import("./net/link.js").LinkState} */ link) => {
     if (link.stage !== "open") {
       taskPanel.clear();
+      fetchPanel.show(null);
       targets.clear();
       situation.learn({ link, welcome: null, state: null });
     } else situation.learn({ link });
@@ -121,6 +126,10 @@ function joinControl() {
   on(control, "task", (/** @type {import("./net/messages.js").TaskView} */ task) => taskPanel.show(task));
   on(control, "move", (/** @type {import("./net/messages.js").MoveView} */ move) => {
     taskPanel.showMove(move);
+    drawPlan();
+  });
+  on(control, "fetch", (/** @type {import("./net/messages.js").FetchView} */ view) => {
+    fetchPanel.show(view);
     drawPlan();
   });
   on(control, "target", (/** @type {import("./net/messages.js").TargetView} */ target) => targets.put(target));

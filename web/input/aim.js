@@ -1,5 +1,5 @@
 /**
- * Turns a tap or a drawn box into the message it means now: for the guide's step, a floor guess, or Locate.
+ * Turns a tap or a drawn box into the message it means now: for the guide's step, a floor guess, Locate, or Fetch.
  *
  * @typedef {import("../view/picture.js").PicturePoint} PicturePoint
  * @typedef {import("./tap.js").BoxedPart} BoxedPart
@@ -7,7 +7,7 @@
 export class Aim {
   /**
    * @param {{socket: import("../net/control_socket.js").ControlSocket, guide: import("../ui/guide.js").Guide,
-   *   purpose: import("../ui/purpose.js").Purpose, overlay: import("../view/overlay.js").Overlay,
+   *   purpose: import("../ui/purpose.js").Purpose, fetchMode: import("../ui/fetch_mode.js").FetchMode, overlay: import("../view/overlay.js").Overlay,
    *   boxes: import("../view/boxes.js").Boxes, playback: import("../view/playback.js").Playback,
    *   toast: import("../ui/toast.js").Toast}} parts
    */
@@ -25,12 +25,12 @@ export class Aim {
 
   /** @param {BoxedPart} box */
   async around(box) {
-    const { boxes, purpose } = this.parts;
+    const { boxes } = this.parts;
     const { frameId, left, top, right, bottom } = box;
     this.draw({ ...box, isEnough: true, isSent: true });
     const { pending } = boxes;
     const middle = { u: (left + right) / 2, v: (top + bottom) / 2 };
-    await this.send({ type: "tap", frame_id: frameId, ...middle, purpose: purpose.chosen, box: [left, top, right, bottom] });
+    await this.send(this.pointed({ frame_id: frameId, ...middle, box: [left, top, right, bottom] }));
     if (boxes.pending === pending) this.draw(null);
   }
 
@@ -40,14 +40,23 @@ export class Aim {
     const ack = await socket.send(message);
     if (!ack.ok) toast.tell(ack.reason, "bad");
     // The robot moves now: its operator must see where.
-    else if (message.type === "tap" && message.purpose === "locate") playback.live();
+    else if (message.type === "fetch" || (message.type === "tap" && message.purpose === "locate")) playback.live();
   }
 
   /** @param {PicturePoint} point @returns {import("../net/control_socket.js").Unnumbered} */
   message({ frameId, u, v }) {
-    const { guide, purpose } = this.parts;
-    if (guide.wantsTap) return { type: "guide_tap", frame_id: frameId, u, v };
-    return { type: "tap", frame_id: frameId, u, v, purpose: purpose.chosen };
+    if (this.parts.guide.wantsTap) return { type: "guide_tap", frame_id: frameId, u, v };
+    return this.pointed({ frame_id: frameId, u, v });
+  }
+
+  /**
+   * @param {{frame_id: number, u: number, v: number, box?: [number, number, number, number]}} place
+   * @returns {import("../net/control_socket.js").Unnumbered}
+   */
+  pointed(place) {
+    const { purpose, fetchMode } = this.parts;
+    if (purpose.chosen === "fetch") return { type: "fetch", mode: fetchMode.chosen, ...place };
+    return { type: "tap", purpose: purpose.chosen, ...place };
   }
 
   /** @param {PicturePoint | null} point */

@@ -8,13 +8,13 @@ export const PROTOCOL_VERSION = 1;
 /**
  * What the page may send.
  *
- * @typedef {Hello | Ping | Heartbeat | Drive | Stop | EmergencyStop | EmergencyReset | ArmStep | ArmGoto | Capture | LeaseRequest | LeaseRelease | LeaseAnswer | TapTarget | TargetClear | TaskCancel | GuideStart | GuideTap | GuideValue | GuideAct | GuideEnd} FromPage
+ * @typedef {Hello | Ping | Heartbeat | Drive | Stop | EmergencyStop | EmergencyReset | ArmStep | ArmGoto | Capture | LeaseRequest | LeaseRelease | LeaseAnswer | TapTarget | TargetClear | TaskCancel | GuideStart | GuideTap | GuideValue | GuideAct | GuideEnd | Fetch | FetchConfirm | FetchResume | FetchVerb} FromPage
  */
 
 /**
  * What the server sends.
  *
- * @typedef {Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | CapturesChanged} FromServer
+ * @typedef {Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | FetchView | CapturesChanged} FromServer
  */
 
 /**
@@ -219,6 +219,45 @@ export const PROTOCOL_VERSION = 1;
  */
 
 /**
+ * Fetch what was tapped or boxed, or a target that is known (`target_id`, then no tap). 'plan': say whether and how; 'confirm': then wait for `fetch_confirm`; 'go': do it.
+ *
+ * @typedef {object} Fetch
+ * @property {number} seq
+ * @property {"fetch"} type
+ * @property {"plan" | "confirm" | "go"} mode
+ * @property {number | null} [frame_id]
+ * @property {number | null} [u] as in tap
+ * @property {number | null} [v]
+ * @property {[number, number, number, number] | null} [box] as in tap
+ * @property {number | null} [target_id] a target with a position; it must be in the picture
+ */
+
+/**
+ * Yes, fetch it as planned.
+ *
+ * @typedef {object} FetchConfirm
+ * @property {number} seq
+ * @property {"fetch_confirm"} type
+ */
+
+/**
+ * Go on with the fetch that was stopped.
+ *
+ * @typedef {object} FetchResume
+ * @property {number} seq
+ * @property {"fetch_resume"} type
+ */
+
+/**
+ * What to do with the thing that is held.
+ *
+ * @typedef {object} FetchVerb
+ * @property {number} seq
+ * @property {"fetch_verb"} type
+ * @property {"bring_back" | "put_down" | "hand_over" | "let_go"} verb
+ */
+
+/**
  * Answer to hello.
  *
  * @typedef {object} Welcome
@@ -349,6 +388,31 @@ export const PROTOCOL_VERSION = 1;
  * @property {number | null} distance
  * @property {string[]} values_typed
  * @property {string} result the answer in a few lines, '' until there is one
+ */
+
+/**
+ * Where fetching stands. Lengths in metres, world frame.
+ *
+ * @typedef {object} FetchView
+ * @property {"fetch"} type
+ * @property {string | null} phase null: nothing is being fetched
+ * @property {number | null} target_id
+ * @property {string} does what the robot does in this phase
+ * @property {string} why the reason for the newest decision
+ * @property {string} next what comes if all goes well
+ * @property {number} progress
+ * @property {number} attempt
+ * @property {"yes" | "unsure" | "no" | null} verdict can it be fetched
+ * @property {string} reason
+ * @property {string} advice
+ * @property {number | null} seconds expected time until it is lifted
+ * @property {[number, number, number][]} path x, y, heading of the base, from where it was when planning
+ * @property {[number, number][][]} grasp the claw on the floor plan
+ * @property {boolean} may_confirm
+ * @property {boolean} may_resume
+ * @property {string} stopped who or what stopped it
+ * @property {string} condition how the robot stands after the stop
+ * @property {("bring_back" | "put_down" | "hand_over" | "let_go")[]} verbs
  */
 
 /**

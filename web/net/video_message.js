@@ -4,8 +4,9 @@
  * @typedef {{target_id: number, u: number, v: number, inside: boolean, region: [number, number][],
  *   box?: [number, number][], state: "followed" | "predicted"}} Marker `box`: corners of the thing's size, or none
  * @typedef {{base: [number, number, number] | null, markers: Marker[],
- *   path?: [number, number][][]}} FrameMeta `base`: x, y [m], heading [rad]; `path`: sides of the way being
- *   driven, and the robot's body at its end [px]
+ *   path?: [number, number][][], plan?: [number, number][][]}} FrameMeta `base`: x, y [m], heading [rad];
+ *   `path`: sides of the way being driven, and the robot's body at its end [px]; `plan`: the way to what is
+ *   to be fetched, and the claw there [px]
  * @typedef {{frameId: number, capturedMs: number, sentMs: number, receivedMs: number, width: number,
  *   height: number, meta: FrameMeta, jpeg: Blob}} Frame `captured` and `sent` on the server's clock
  */

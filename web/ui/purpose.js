@@ -1,18 +1,23 @@
-/** What a tap on the picture does: Locate (the robot moves) or Floor guess (at once). */
+/** What a tap on the picture does: Locate (the robot moves), Floor guess (at once), Fetch (drives and grips). */
 import { byId } from "./dom.js";
+
+/** @typedef {"locate" | "floor" | "fetch"} Chosen */
+
+/** @type {Chosen[]} */
+const PURPOSES = ["locate", "floor", "fetch"];
 
 export class Purpose {
   constructor() {
-    /** @type {"locate" | "floor"} */
+    /** @type {Chosen} */
     this.chosen = "locate";
-    byId("purpose-locate").addEventListener("click", () => this.choose("locate"));
-    byId("purpose-floor").addEventListener("click", () => this.choose("floor"));
+    for (const purpose of PURPOSES) byId(`purpose-${purpose}`).addEventListener("click", () => this.choose(purpose));
   }
 
-  /** @param {"locate" | "floor"} purpose */
-  choose(purpose) {
-    this.chosen = purpose;
-    byId("purpose-locate").setAttribute("aria-checked", String(purpose === "locate"));
-    byId("purpose-floor").setAttribute("aria-checked", String(purpose === "floor"));
+  /** @param {Chosen} chosen */
+  choose(chosen) {
+    this.chosen = chosen;
+    for (const purpose of PURPOSES) {
+      byId(`purpose-${purpose}`).setAttribute("aria-checked", String(purpose === chosen));
+    }
   }
 }

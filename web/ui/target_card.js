@@ -10,15 +10,28 @@ export class TargetCard {
   /**
    * @param {import("../net/control_socket.js").ControlSocket} socket
    * @param {import("../view/targets.js").Targets} targets
+   * @param {import("./fetch_mode.js").FetchMode} fetchMode
+   * @param {import("./toast.js").Toast} toast
    */
-  constructor(socket, targets) {
+  constructor(socket, targets, fetchMode, toast) {
+    this.socket = socket;
     this.targets = targets;
+    this.fetchMode = fetchMode;
+    this.toast = toast;
     targets.addEventListener("change", () => this.show());
     byId("card-close").addEventListener("click", () => {
       const { newest } = targets;
       if (newest) void socket.send({ type: "target_clear", target_id: newest.target_id });
     });
+    byId("card-fetch").addEventListener("click", () => this.fetch());
     byId("card-flip").addEventListener("click", () => this.flip());
+  }
+
+  async fetch() {
+    const { newest } = this.targets;
+    if (!newest) return;
+    const ack = await this.socket.send({ type: "fetch", mode: this.fetchMode.chosen, target_id: newest.target_id });
+    if (!ack.ok) this.toast.tell(ack.reason, "bad");
   }
 
   flip() {
@@ -33,6 +46,7 @@ export class TargetCard {
     byId("card").hidden = target === null;
     if (!target) return;
     byId("card").dataset.source = target.source;
+    byId("card-fetch").hidden = target.source === "floor" || target.point_in_world === null;
     setText(byId("card-title"), TITLES[target.source]);
     setText(byId("card-range"), target.range === null ? "No position" : length(target.range));
     setText(byId("card-interval"), intervalWords(target));

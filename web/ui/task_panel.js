@@ -7,6 +7,9 @@ import { byId, setText } from "./dom.js";
  * @typedef {import("../net/messages.js").MoveView} MoveView
  */
 
+/** Tasks whose end nothing else on the page tells. */
+const TOLD_WHEN_DONE = new Set(["put_down", "let_go", "bring_back", "hand_over"]);
+
 export class TaskPanel {
   /**
    * @param {import("../net/control_socket.js").ControlSocket} socket
@@ -49,6 +52,7 @@ export class TaskPanel {
   /** @param {TaskView} task */
   tellEnd(task) {
     if (task.state === "cancelled") this.toast.tell(task.message || "Cancelled. The robot stands still.");
+    if (task.state === "done" && TOLD_WHEN_DONE.has(task.kind)) this.toast.tell(sentence(task.message));
     if (task.state === "failed") this.toast.tell(task.message || "This did not work.", "bad");
   }
 }

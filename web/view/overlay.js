@@ -30,6 +30,7 @@ export class Overlay {
     ctx.clip();
     drawCentreLine(ctx, placement);
     drawPath(ctx, placement, frame.meta?.path ?? []);
+    for (const line of frame.meta?.plan ?? []) drawPlanned(ctx, placement, line);
     const markers = frame.meta?.markers ?? [];
     for (const marker of markers) this.drawMarker(ctx, placement, marker);
     for (const target of this.unmarked(frame, markers)) {
@@ -106,6 +107,13 @@ function drawPath(ctx, placement, path) {
   }
   for (const side of [left, right]) outlined(ctx, PATH, () => (trace(ctx, placement, side), ctx.stroke()), 2);
   outlined(ctx, PATH, () => (trace(ctx, placement, body), ctx.stroke()), 2.5);
+}
+
+/** A line of the plan to fetch. @param {CanvasRenderingContext2D} ctx @param {Placement} placement @param {[number, number][]} line */
+function drawPlanned(ctx, placement, line) {
+  ctx.setLineDash([8, 5]);
+  outlined(ctx, PATH, () => (trace(ctx, placement, line), ctx.stroke()), 2.5);
+  ctx.setLineDash([]);
 }
 
 /** @param {CanvasRenderingContext2D} ctx @param {Placement} placement @param {[number, number][]} points */

@@ -4,6 +4,7 @@
  *
  * @typedef {import("../net/messages.js").TargetView} TargetView
  * @typedef {import("../net/messages.js").OdometryView} OdometryView
+ * @typedef {import("../net/messages.js").FetchView} FetchView
  * @typedef {import("../net/messages.js").MoveView} MoveView
  * @typedef {{x: number, y: number}} Point in base: x ahead, y left [m]
  */
@@ -28,14 +29,16 @@ export class Plan {
    * @param {TargetView[]} targets
    * @param {number} halfView half the horizontal field of view [rad]
    * @param {MoveView | null} move that is being made
+   * @param {FetchView | null} fetch what is being fetched
    */
-  draw(odometry, targets, halfView, move = null) {
+  draw(odometry, targets, halfView, move = null, fetch = null) {
     this.fit(odometry, targets, move);
     if (this.width === 0) return;
     this.drawView(halfView);
     for (const target of targets) this.drawTarget(odometry, target);
     this.drawRobot();
     if (move) this.drawMove(odometry, move);
+    if (fetch) this.drawFetch(odometry, fetch);
     this.drawScale();
   }
 
@@ -101,6 +104,17 @@ export class Plan {
     ctx.fill();
     ctx.fillStyle = PATH;
     ctx.fillText(words, left + 6, this.height - 11);
+  }
+
+  /** The way to the thing and the claw there. @param {OdometryView} odometry @param {FetchView} fetch */
+  drawFetch(odometry, fetch) {
+    const { ctx } = this;
+    ctx.strokeStyle = PATH;
+    ctx.lineWidth = 2;
+    ctx.setLineDash([6, 4]);
+    this.drawLine(odometry, fetch.path.map(([x, y]) => [x, y]));
+    ctx.setLineDash([]);
+    for (const line of fetch.grasp) this.drawLine(odometry, line);
   }
 
   drawRobot() {

@@ -7,7 +7,7 @@ from tapreach.control.arm_path_motion import ArmPathMotion, TimedPose
 from tapreach.control.joined_motion import ArmFirst, InTurn, Rest
 from tapreach.control.loop import ControlLoop
 from tapreach.control.motion import Motion
-from tapreach.control.relative_move import ABOUT, ABOUT_TURN, Advance, Turn
+from tapreach.control.relative_move import ABOUT, ABOUT_TURN, Advance, Turn, slowed
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import ArmPose, Odometry
@@ -24,9 +24,9 @@ class LoopPilot:
         """See Pilot."""
         return await self._loop.carry_out(Turn(angle, self._robot.description.base))
 
-    async def advance(self, distance: float) -> Odometry:
+    async def advance(self, distance: float, share: float = 1.0) -> Odometry:
         """See Pilot."""
-        return await self._loop.carry_out(Advance(distance, self._robot.description.base))
+        return await self._loop.carry_out(Advance(distance, slowed(self._robot.description.base, share)))
 
     async def move(self, step: PlanarStep, arm: ArmPose | None = None) -> Odometry:
         """See Pilot."""

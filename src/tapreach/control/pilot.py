@@ -23,8 +23,10 @@ class Pilot(Protocol):
         """Turn on the spot by `angle` [rad, left positive]; return the odometry once at rest."""
         ...
 
-    async def advance(self, distance: float) -> Odometry:
-        """Drive straight by `distance` [m, may be negative]; return the odometry once at rest."""
+    async def advance(self, distance: float, share: float = 1.0) -> Odometry:
+        """Drive straight by `distance` [m, may be negative] at `share` of a task's usual speed; return the
+        odometry once at rest.
+        """
         ...
 
     async def move(self, step: PlanarStep, arm: ArmPose | None = None) -> Odometry:

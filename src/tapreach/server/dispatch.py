@@ -4,7 +4,10 @@ from collections.abc import Callable
 from typing import Any
 
 from tapreach.server import messages as m
+from tapreach.server.message_base import Request
+from tapreach.server.messages_fetch import Fetch, FetchConfirm, FetchResume, FetchVerb
 from tapreach.server.requests_driving import DrivingRequests
+from tapreach.server.requests_fetch import FetchRequests
 from tapreach.server.requests_looking import LookingRequests
 from tapreach.server.requests_tasks import TaskRequests
 from tapreach.server.station import Station
@@ -15,12 +18,13 @@ Answerer = Callable[[Visitor, Any], Any]
 """Takes its own type of request; returns an Answer, or a coroutine of one."""
 
 
-def answerers(station: Station) -> dict[type[m.Request], Answerer]:
+def answerers(station: Station) -> dict[type[Request], Answerer]:
     """Return the method for every type of request; a test holds it against messages.FromPage.
 
     A method may raise TapreachError, whose text is then the refusal; those that wait are coroutines.
     """
-    driving, looking, tasks = DrivingRequests(station), LookingRequests(station), TaskRequests(station)
+    driving, looking = DrivingRequests(station), LookingRequests(station)
+    tasks, fetching = TaskRequests(station), FetchRequests(station)
     return {
         m.Hello: looking.hello,
         m.Ping: looking.ping,
@@ -43,4 +47,8 @@ def answerers(station: Station) -> dict[type[m.Request], Answerer]:
         m.GuideValue: tasks.guide_value,
         m.GuideAct: tasks.guide_act,
         m.GuideEnd: tasks.guide_end,
+        Fetch: fetching.fetch,
+        FetchConfirm: fetching.confirm,
+        FetchResume: fetching.resume,
+        FetchVerb: fetching.verb,
     }

@@ -1,6 +1,6 @@
 """All pages that are open: one encoding of a message, put into every outbox."""
 
-from tapreach.server.message_parts import Message
+from tapreach.server.message_base import Message
 from tapreach.server.outbox import Outbox
 
 

@@ -72,10 +72,11 @@ class MarkerProjection:
         world_from_base: PlanarPose | None,
         marks: list[Mark],
         path_in_world: Sequence[FloatArray] = (),
+        plan_in_world: Sequence[FloatArray] = (),
     ) -> bytes:
         """Return the JSON that travels with a frame captured at `world_from_base` (None: not known).
 
-        path_in_world: lines (n, 3) of the move that is being made.
+        path_in_world, plan_in_world: lines (n, 3) of the move that is being made, and of the plan to fetch.
         """
         meta: dict[str, object] = {"base": None, "markers": []}
         if world_from_base is not None:
@@ -83,6 +84,8 @@ class MarkerProjection:
             meta["markers"] = self._markers(world_from_base, marks) if marks else []
             if path_in_world:
                 meta["path"] = [self._line(world_from_base, line) for line in path_in_world]
+            if plan_in_world:
+                meta["plan"] = [self._line(world_from_base, line) for line in plan_in_world]
         return json.dumps(meta, separators=(",", ":")).encode()
 
     def _line(self, world_from_base: PlanarPose, points_in_world: FloatArray) -> list[list[float]]:

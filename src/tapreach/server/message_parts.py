@@ -1,12 +1,8 @@
 """What stands inside messages of the control socket: speeds, lens, odometry, arm, lease, size of a target."""
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-
-class Message(BaseModel):
-    """Base of all messages: unknown keys are errors."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
+from tapreach.server.message_base import Message
 
 
 class TwistView(Message):

@@ -9,35 +9,21 @@ from typing import Annotated, Literal
 
 from pydantic import Field, TypeAdapter
 
+from tapreach.server.message_base import Finite, FrameId, Message, Request, Timed
 from tapreach.server.message_parts import (
     ArmView,
     CameraView,
     ExtentView,
     LeaseView,
-    Message,
     OdometryView,
     TwistView,
 )
+from tapreach.server.messages_fetch import Fetch, FetchConfirm, FetchResume, FetchVerb, FetchView
 
 PROTOCOL_VERSION = 1
-Finite = Annotated[float, Field(allow_inf_nan=False)]
 Accuracy = Annotated[float, Field(ge=0.001, le=0.5, allow_inf_nan=False)]
-FrameId = Annotated[int, Field(ge=1)]
 ArmControl = Literal["T", "R", "left", "right", "forward", "backward"]
 GuideKind = Literal["two_tap", "rotation_centre"]
-
-
-class Request(Message):
-    """From the page. `seq` rises by one with every message of a session."""
-
-    seq: int = Field(ge=1)
-
-
-class Timed(Request):
-    """A request that moves something: it is dropped when it is too old, or the picture its sender saw is."""
-
-    client_ms: Finite = Field(description="the page's performance.now() when the person acted [ms]")
-    frame_id: FrameId | None = Field(description="the frame on the screen; null when there was none")
 
 
 class Hello(Request):
@@ -219,7 +205,11 @@ FromPage = Annotated[
     | GuideTap
     | GuideValue
     | GuideAct
-    | GuideEnd,
+    | GuideEnd
+    | Fetch
+    | FetchConfirm
+    | FetchResume
+    | FetchVerb,
     Field(discriminator="type"),
 ]
 from_page: TypeAdapter[FromPage] = TypeAdapter(FromPage)
@@ -364,5 +354,15 @@ class CapturesChanged(Message):
 
 
 FromServer = (
-    Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | CapturesChanged
+    Welcome
+    | Pong
+    | Ack
+    | State
+    | TaskView
+    | MoveView
+    | TargetView
+    | TargetGone
+    | GuideView
+    | FetchView
+    | CapturesChanged
 )

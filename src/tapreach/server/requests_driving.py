@@ -5,6 +5,7 @@ from tapreach.control.deadman import Wish
 from tapreach.control.gate import command_refusal, picture_refusal, refusal
 from tapreach.errors import FrameError, LinkLost
 from tapreach.robot.messages import ArmPose, Twist
+from tapreach.server.message_base import Request, Timed
 from tapreach.server.messages import (
     Ack,
     ArmGoto,
@@ -16,9 +17,7 @@ from tapreach.server.messages import (
     LeaseAnswer,
     LeaseRelease,
     LeaseRequest,
-    Request,
     Stop,
-    Timed,
 )
 from tapreach.server.station import Station
 from tapreach.server.views import twist_view

@@ -2,6 +2,7 @@
 
 from tapreach.errors import InputError
 from tapreach.geometry.pixel_box import PixelBox
+from tapreach.server.message_base import Request
 from tapreach.server.messages import (
     Ack,
     GuideAct,
@@ -9,7 +10,6 @@ from tapreach.server.messages import (
     GuideStart,
     GuideTap,
     GuideValue,
-    Request,
     TapTarget,
     TargetClear,
     TaskCancel,

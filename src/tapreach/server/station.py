@@ -150,7 +150,10 @@ class Station:
 
     def _describe(self, frame: Frame) -> bytes:
         return self._projection.meta(
-            self.pose_at(frame.captured_ns), self.targets.marks, self.planned_path.lines_in_world
+            self.pose_at(frame.captured_ns),
+            self.targets.marks,
+            self.planned_path.lines_in_world,
+            self.tasks.fetch_lines_in_world,
         )
 
     def _on_odometry(self, reading: Odometry) -> None:

@@ -1,5 +1,6 @@
 """The targets on the page: newest wins by id; told to every page and drawn into every frame."""
 
+from tapreach.errors import InputError
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.server.hub import Hub
 from tapreach.server.markers import Mark
@@ -26,6 +27,18 @@ class Targets:
     def marks(self) -> list[Mark]:
         """What is to be drawn into frames."""
         return list(self._marks.values())
+
+    def known(self) -> list[Target]:
+        """Return the targets that have a position."""
+        return [each for each in self._targets.values() if each.point_in_world is not None]
+
+    def get(self, target_id: int) -> Target:
+        """Return a target that has a position. Raises InputError naming those that have."""
+        for target in self.known():
+            if target.target_id == target_id:
+                return target
+        ids = ", ".join(str(each.target_id) for each in self.known()) or "none"
+        raise InputError(f"there is no target {target_id} with a position; there are: {ids}")
 
     def show(self, target: Target, world_from_base: PlanarPose) -> None:
         """Show or update a target."""

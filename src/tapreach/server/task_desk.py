@@ -8,10 +8,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 from tapreach.control.gate import refusal
 from tapreach.control.pilot import Pilot
 from tapreach.errors import InputError, LinkLost
+from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel, require_inside
 from tapreach.robot.clock import SECOND
 from tapreach.robot.messages import Frame
+from tapreach.server.fetch_desk import FetchDesk
 from tapreach.server.messages import GuideView, TaskView
+from tapreach.tasks.fetch.fetch_state import Mode, Verb
+from tapreach.tasks.fetch.known_target import tap_on
 from tapreach.tasks.floor_guess import floor_guess
 from tapreach.tasks.guide import Guide
 from tapreach.tasks.guide_state import GuideKind, GuideState
@@ -56,8 +60,10 @@ class TaskDesk:
             report=_report_nowhere,
             show_target=self._show_target,
             show_move=station.planned_path.show,
+            show_fetch=lambda state: self._fetch.show(state),
         )
         self._runner = TaskRunner(self._context, station.loop, self._tell_progress)
+        self._fetch = FetchDesk(station.hub, self._runner)
         self._guide: Guide | None = None
         self._guide_owner_id: int | None = None
         self._located_target_id: int | None = None
@@ -87,12 +93,48 @@ class TaskDesk:
     def locate(self, tap: Tap, session_id: int, accuracy: float = ACCURACY) -> None:
         """Start locating. Raises FrameError, InputError; and InputError with the gate's reason."""
         self._require_tap(tap)
-        reason = refusal(self._station.authority.circumstances_of(session_id))
-        if reason:
-            raise InputError(reason)
+        self._require_motion(session_id)
         target_id = self._station.targets.new_id()
         self._runner.start(LocateTask(tap, target_id, accuracy=accuracy), session_id)
         self._located_target_id = target_id
+
+    @property
+    def fetch_lines_in_world(self) -> list[FloatArray]:
+        """What is to be drawn of the plan to fetch, (n, 3) each [m]."""
+        return self._fetch.lines_in_world
+
+    def fetch(self, tap: Tap, mode: Mode, session_id: int) -> None:
+        """Start to fetch what was tapped. Raises as `locate`."""
+        self._require_tap(tap)
+        self._require_motion(session_id)
+        target_id = self._station.targets.new_id()
+        self._fetch.start(tap, target_id, mode, self._station.targets.known(), session_id)
+        self._located_target_id = target_id
+
+    def fetch_target(self, target_id: int, mode: Mode, session_id: int) -> None:
+        """Start to fetch a target that has a position, by where it is in the newest picture.
+
+        Raises as `fetch`, and InputError when it is not in the picture.
+        """
+        self._require_motion(session_id)
+        tap = tap_on(self._context, self._station.targets.get(target_id))
+        others = [each for each in self._station.targets.known() if each.target_id != target_id]
+        self._fetch.start(tap, target_id, mode, others, session_id)
+        self._located_target_id = target_id
+
+    def confirm_fetch(self) -> None:
+        """The operator says yes. Raises InputError when nothing waits for it."""
+        self._fetch.confirm()
+
+    def resume_fetch(self, session_id: int) -> None:
+        """Go on with the fetch that was stopped. Raises InputError."""
+        self._require_motion(session_id)
+        self._fetch.resume(self._station.targets.known(), session_id)
+
+    def follow_up(self, verb: Verb, session_id: int) -> None:
+        """Do something with the thing that is held. Raises InputError."""
+        self._require_motion(session_id)
+        self._fetch.follow_up(verb, session_id)
 
     async def guess_on_floor(self, tap: Tap) -> None:
         """Show where the tapped place is if it is on the floor. Raises FrameError, PoseError, InputError."""
@@ -131,6 +173,11 @@ class TaskDesk:
         if self._guide is not None:
             self._in_background(self.end_guide())
 
+    def _require_motion(self, session_id: int) -> None:
+        reason = refusal(self._station.authority.circumstances_of(session_id))
+        if reason:
+            raise InputError(reason)
+
     def _require_tap(self, tap: Tap) -> None:
         frame = self._station.frames.get(tap.frame_id)
         place = require_inside(Pixel(tap.u, tap.v), frame.size)
@@ -163,6 +210,7 @@ class TaskDesk:
             message=progress.message,
         )
         self._station.hub.tell("task", view)
+        self._fetch.task_changed(progress)
 
     def _tell_guide(self, state: GuideState) -> None:
         self._station.hub.tell("guide", GuideView(**asdict(state)))

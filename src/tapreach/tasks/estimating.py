@@ -30,11 +30,13 @@ class LocatedPoint(PointEstimate):
 
     The world hangs on the newest base pose: what is driven from here by the wheels arrives at
     `point_in_world`, and its covariance is that of the way from the present base (docs/decisions/0005).
-    sightings: what it rests on, their poses as they are now known. heading_from: who said how the robot
-    turned; for WHEELS `heading_reason` says why not the background.
+    sightings: what it rests on, their poses as they are now known. base_from_camera: the mount as it is now
+    known. heading_from: who said how the robot turned; for WHEELS `heading_reason` says why not the
+    background.
     """
 
     sightings: tuple[Sighting, ...]
+    base_from_camera: RigidTransform
     heading_from: HeadingSource
     heading_reason: str
 
@@ -78,7 +80,11 @@ def estimate(
     values = {field.name: getattr(found, field.name) for field in fields(found)}
     source = HeadingSource.BACKGROUND if not straight.reason else HeadingSource.WHEELS
     return LocatedPoint(
-        **values, sightings=straight.sightings, heading_from=source, heading_reason=straight.reason
+        **values,
+        sightings=straight.sightings,
+        base_from_camera=straight.base_from_camera,
+        heading_from=source,
+        heading_reason=straight.reason,
     )
 
 

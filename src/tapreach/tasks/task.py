@@ -13,6 +13,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import Frame
+from tapreach.tasks.fetch.fetch_state import FetchState
 from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.target import Target
 
@@ -82,6 +83,8 @@ class TaskContext:
     """Show or update a target on the page (newest wins, by target_id)."""
     show_move: Callable[[PlannedMove | None], None] = lambda _: None
     """Show the move that is about to be made; None: it is over."""
+    show_fetch: Callable[[FetchState | None], None] = lambda _: None
+    """Show where fetching stands; None: nothing is being fetched or held."""
 
 
 class Task(Protocol):

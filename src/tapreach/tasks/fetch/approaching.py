@@ -1,0 +1,80 @@
+"""Driving up to the thing, leg by leg, each planned anew from what is known by then."""
+
+import math
+
+import numpy as np
+
+from tapreach.geometry.planar_motion import PlanarStep
+from tapreach.tasks.fetch.approach import Approach, Leg
+from tapreach.tasks.fetch.looking import in_words, measure, previewed
+from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.run import Ended, FetchRun
+from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.follower import TargetLost
+
+MOST_LEGS = 10
+BLIND_SD = 0.006
+"""A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
+LONGEST_LEG = 0.4
+"""Farther than this the thing is not driven towards without planning anew [m]."""
+NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.03, math.radians(3.0)
+"""A leg as short as this needs not be driven before the last look."""
+
+
+async def approach(run: FetchRun) -> Ended:
+    """Drive to the last look. Raises MotionInterrupted, LinkLost."""
+    for _ in range(MOST_LEGS):
+        seen = run.preview = await previewed(run)
+        if seen.verdict is Verdict.NO or seen.approach is None:
+            return Ended(Outcome.CANNOT, in_words(seen))
+        leg = next_leg(seen.approach)
+        if leg is None:
+            return Ended(Outcome.DONE, "near enough for the last look")
+        try:
+            await drive(run, leg)
+        except TargetLost as lost:
+            return Ended(Outcome.LOST, str(lost))
+        await measure(run)
+    return Ended(Outcome.CANNOT, f"did not arrive before it in {MOST_LEGS} legs: the way keeps changing")
+
+
+async def last_look(run: FetchRun) -> Ended:
+    """Measure the thing from near and decide on the grasp."""
+    loss, sd = _loss(run), _place_sd(run)
+    if loss and sd > BLIND_SD:
+        return Ended(
+            Outcome.LOST, f"lost the thing, its place is known to ±{2000.0 * sd:.0f} mm only: {loss}"
+        )
+    await measure(run)
+    seen = run.preview = await previewed(run, is_last_look=True)
+    if seen.verdict is Verdict.NO or seen.approach is None:
+        return Ended(Outcome.CANNOT, in_words(seen))
+    if next_leg(seen.approach) is not None:
+        return Ended(Outcome.MISSED, "measured from near, it is to be gripped from elsewhere")
+    return Ended(Outcome.DONE, seen.reason)
+
+
+def _loss(run: FetchRun) -> str:
+    return run.locating.follower.loss if run.locating is not None else "nothing follows it"
+
+
+def _place_sd(run: FetchRun) -> float:
+    """Return one sigma of the tapped place [m], along the direction in which it is known worst."""
+    return math.sqrt(max(0.0, float(np.linalg.eigvalsh(run.thing().point_cov_in_world)[-1])))
+
+
+def next_leg(approach: Approach) -> Leg | None:
+    """Return what is driven next, at most what is driven without planning anew; None at the last look."""
+    for leg in approach.legs:
+        if abs(leg.step.turn) > NEAR_ENOUGH_TURN or abs(leg.step.advance) > NEAR_ENOUGH:
+            advance = math.copysign(min(abs(leg.step.advance), LONGEST_LEG), leg.step.advance)
+            return Leg(PlanarStep(leg.step.turn, advance), leg.share, leg.sees_thing)
+    return None
+
+
+async def drive(run: FetchRun, leg: Leg) -> None:
+    """Drive a leg with the arm folded, following the thing and estimating on. Raises TargetLost."""
+    assert run.locating is not None
+    run.remember(way=(*run.memory.way, run.here))
+    folded = run.context.description.arm.standard.pose()
+    await run.locating.drive(run.context.pilot.move(leg.step, folded))

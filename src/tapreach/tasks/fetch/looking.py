@@ -1,0 +1,105 @@
+"""The first phases of a fetch: where the thing is and how large, and whether it can be fetched."""
+
+from functools import partial
+
+import numpy as np
+
+from tapreach.estimation.point_estimate import Status
+from tapreach.geometry.finite import FloatArray
+from tapreach.tasks.aiming import aimed
+from tapreach.tasks.fetch.fetch_state import FetchPlan, Mode
+from tapreach.tasks.fetch.known_target import pixel_of
+from tapreach.tasks.fetch.preview import ReachPreview, preview
+from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.run import Ended, FetchRun
+from tapreach.tasks.fetch.size import size_of
+from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.follower import Follower, TargetLost
+from tapreach.tasks.free_way import way_behind
+from tapreach.tasks.locate import Locating
+from tapreach.tasks.target import TargetSource
+from tapreach.tasks.target_report import TargetReport
+from tapreach.tasks.task import Tap
+
+ACCURACY = 0.02
+"""Relative error of the range, one sigma, at which driving up begins: it is estimated on on the way."""
+GRASPING_SECONDS = 20.0
+"""What looking at the claw, reaching, gripping and lifting take."""
+
+
+async def look(run: FetchRun) -> Ended:
+    """Locate the thing and measure it. Raises as LocateTask.run."""
+    tap = _tap(run)
+    if tap is None:
+        return Ended(Outcome.LOST, "it is not in the picture: drive so that it is, and tap it again")
+    context, target_id = run.context, run.memory.target_id
+    await end_following(run)
+    tap = await aimed(context, tap)
+    report = TargetReport(target_id, TargetSource.LOCATE, tap, context.description)
+    run.locating = Locating(context, Follower(context, tap, key=target_id), report, ACCURACY)
+    try:
+        sentence = await run.locating.run()
+    except TargetLost as lost:
+        return Ended(Outcome.LOST, str(lost))
+    estimate = run.locating.estimate
+    if estimate is None or estimate.status is not Status.DETERMINED:
+        return Ended(Outcome.CANNOT, sentence)
+    await measure(run)
+    return Ended(Outcome.DONE, sentence)
+
+
+async def measure(run: FetchRun) -> None:
+    """Measure the thing in the pictures that have been taken, and remember where it is."""
+    locating = run.locating
+    point = run.thing().point_in_world
+    if locating is not None and locating.estimate is not None:
+        run.measured(await size_of(run.context, locating.estimate), point)
+    run.remember(point_in_world=point)
+
+
+async def judge_reach(run: FetchRun) -> Ended:
+    """Say whether and how it can be fetched from here, and show the plan."""
+    run.preview = seen = await previewed(run)
+    if seen.verdict is Verdict.NO:
+        return Ended(Outcome.CANNOT, in_words(seen))
+    if run.memory.mode is Mode.PLAN:
+        return Ended(Outcome.PLAN_ONLY, in_words(seen))
+    asks = run.memory.mode is Mode.CONFIRM and run.memory.attempt == 1
+    return Ended(Outcome.ASK if asks else Outcome.DONE, in_words(seen))
+
+
+async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
+    """Return the preview from where the base is now."""
+    plan = partial(preview, free_behind=way_behind(run.context.poses), is_last_look=is_last_look)
+    return await run.context.compute.call(plan, run.thing(), run.others, run.here, run.context.description)
+
+
+def plan_of(seen: ReachPreview) -> FetchPlan:
+    """Return a preview as the page shows it."""
+    lines: tuple[FloatArray, ...] = ()
+    if seen.grasp is not None:
+        reach_out = np.array([seen.grasp.tip_before, seen.grasp.tip])
+        lines = (*seen.grasp.fingers, reach_out)
+    seconds = seen.driving_seconds + GRASPING_SECONDS if seen.approach is not None else None
+    return FetchPlan(seen.verdict, seen.reason, seen.advice, seen.path, lines, seconds)
+
+
+def in_words(seen: ReachPreview) -> str:
+    """Return the reason, and what would help."""
+    return "; ".join(filter(None, [seen.reason, seen.advice]))
+
+
+async def end_following(run: FetchRun) -> None:
+    """Forget the tracker of an earlier look."""
+    if run.locating is not None:
+        await run.locating.follower.close()
+        run.locating = None
+
+
+def _tap(run: FetchRun) -> Tap | None:
+    """Return the tap that began it; later one on the same place in the newest picture, None out of sight."""
+    memory, frame = run.memory, run.context.frames.newest
+    if memory.point_in_world is None:
+        return memory.tap
+    pixel = pixel_of(run.context, memory.point_in_world)
+    return None if pixel is None or frame is None else Tap(frame.frame_id, pixel.u, pixel.v)

@@ -1,0 +1,107 @@
+"""What the phases of one fetch share: the robot's context, and what is known by now."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from tapreach.errors import TapreachError
+from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.tasks.fetch.arm_watch import ArmWatch
+from tapreach.tasks.fetch.arm_workspace import ArmWorkspace
+from tapreach.tasks.fetch.claw_room import Claw
+from tapreach.tasks.fetch.memory import FetchMemory
+from tapreach.tasks.fetch.obstacle import Obstacle
+from tapreach.tasks.fetch.preview import ReachPreview
+from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
+from tapreach.tasks.locate import Locating
+from tapreach.tasks.present_base import at_present
+from tapreach.tasks.task import TaskContext
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a phase ended, and the reason in words for people."""
+
+    outcome: Outcome
+    why: str
+
+
+class NotKnown(TapreachError):
+    """Something is asked of a thing that has no position yet."""
+
+
+@dataclass
+class FetchRun:
+    """One fetch on its way. Everything in the world of the present odometry.
+
+    size: as last measured, its axis given by its offset (3,) [m] from the tapped place.
+    """
+
+    context: TaskContext
+    memory: FetchMemory
+    others: Sequence[Obstacle]
+    arm_watch: ArmWatch
+    locating: Locating | None = None
+    size: ThingSize | NoSize = field(default_factory=lambda: NoSize("it has not been measured yet"))
+    axis_offset: FloatArray | None = None
+    preview: ReachPreview | None = None
+
+    @property
+    def here(self) -> PlanarPose:
+        """Where the base is by the wheels."""
+        return self.context.poses.newest()[1]
+
+    def thing(self) -> Thing:
+        """Return the thing where it is now known to be. Raises NotKnown before it has a position."""
+        estimate = self.locating.estimate if self.locating is not None else None
+        present = None if estimate is None else at_present(estimate, self.here, self.context.description)
+        if present is None:
+            raise NotKnown("the thing has no position yet: locate it first")
+        size = self.size
+        if isinstance(size, ThingSize) and self.axis_offset is not None:
+            axis = present.point_in_world + self.axis_offset
+            size = replace(size, axis_in_world=axis, axis_cov_in_world=present.cov_in_world)
+        return Thing(present.point_in_world, present.cov_in_world, size)
+
+    def axis_in_world(self) -> FloatArray:
+        """Return the thing's middle (3,) [m]. Raises NotKnown before it was measured."""
+        size = self.thing().size
+        if isinstance(size, NoSize):
+            raise NotKnown(f"its size is not known: {size.reason}")
+        return size.axis_in_world
+
+    def in_base(self, point_in_world: FloatArray) -> FloatArray:
+        """Return a point (3,) [m] in the frame of the present base."""
+        return np.asarray(self.here.to_rigid().inv().apply(point_in_world))
+
+    @property
+    def arm(self) -> ArmWorkspace:
+        """The arm; once it was looked at, in the frame in which the estimate places what the camera sees."""
+        filed = ArmWorkspace.of(self.context.description)
+        estimate = self.locating.estimate if self.locating is not None else None
+        if self.memory.zero is None:
+            return filed
+        mount = self.context.description.camera.mount.base_from_camera()
+        seen = self.memory.zero.seen_arm(mount if estimate is None else estimate.base_from_camera)
+        return filed if seen is None else replace(filed, kinematics=seen)
+
+    @property
+    def claw(self) -> Claw:
+        """The arm as a grasp sees it."""
+        return Claw(self.arm)
+
+    def measured(self, size: ThingSize | NoSize, point_in_world: FloatArray) -> None:
+        """Take a new size, measured with the tapped place at `point_in_world`; one that cannot be told does
+        not replace one that is known.
+        """
+        if isinstance(size, ThingSize):
+            self.size, self.axis_offset = size, np.asarray(size.axis_in_world - point_in_world)
+        elif isinstance(self.size, NoSize):
+            self.size = size
+
+    def remember(self, **changes: object) -> None:
+        """Change what a stopped fetch goes on from."""
+        self.memory = replace(self.memory, **changes)  # type: ignore[arg-type]
