@@ -55,6 +55,15 @@ def test_one_side_is_enough() -> None:
     assert width.log_odds > 4.0
 
 
+def test_what_moved_besides_is_told_by_how_little_any_width_explains() -> None:
+    rng = np.random.default_rng(8)
+    clear = claw_width([(changed(0.03, rng), across())], CLOSED, LEAST, WIDEST)
+    disturbed = changed(0.008, rng)
+    disturbed[150:260, 190:280] = 50.0
+    assert clear.disagreement < 0.12
+    assert claw_width([(disturbed, across())], CLOSED, LEAST, WIDEST).disagreement > 0.2
+
+
 def test_place_beyond_the_picture_is_not_seen() -> None:
     places = AcrossClaw(np.array([0.0, 0.01]), np.array([[[10.0, 10.0]], [[-5.0, 10.0]]]))
     shares = shares_changed(np.zeros((48, 64), np.float32), places)

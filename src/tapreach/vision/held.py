@@ -67,11 +67,13 @@ def log_likelihoods(aside: FloatArray, shares: FloatArray, half_widths: FloatArr
 @dataclass(frozen=True)
 class ClawWidth:
     """Half the width of the claw's end that explains the pictures best [m], and the logarithm of how much
-    better something held explains them than fingers that met.
+    better something held explains them than fingers that met. disagreement: how much of what was seen even
+    the best does not explain, 0 to 1; large when something else moved as well.
     """
 
     half_width: float
     log_odds: float
+    disagreement: float
 
 
 def claw_width(
@@ -82,14 +84,20 @@ def claw_width(
     """
     empty = closed_half + np.linspace(-0.25, 0.5, 7) * closed_half
     holding = np.linspace(least_half, widest_half, 25)
-    by_empty, by_holding = np.zeros(len(empty)), np.zeros(len(holding))
-    for change, across in looks:
-        shares = shares_changed(change, across)
-        by_empty += log_likelihoods(across.aside, shares, empty)
-        by_holding += log_likelihoods(across.aside, shares, holding)
-    log_odds = _mean_of(by_holding) - _mean_of(by_empty)
+    seen = [(across.aside, shares_changed(change, across)) for change, across in looks]
+    by_empty = np.sum([log_likelihoods(*each, empty) for each in seen], axis=0)
+    by_holding = np.sum([log_likelihoods(*each, holding) for each in seen], axis=0)
     every, weights = np.concatenate([empty, holding]), np.concatenate([by_empty, by_holding])
-    return ClawWidth(float(every[int(np.argmax(weights))]), log_odds)
+    best = float(every[int(np.argmax(weights))])
+    return ClawWidth(best, _mean_of(by_holding) - _mean_of(by_empty), _disagreement(seen, best))
+
+
+def _disagreement(seen: Sequence[tuple[FloatArray, FloatArray]], half_width: float) -> float:
+    aside, shares = (np.concatenate(each) for each in zip(*seen, strict=True))
+    known = np.isfinite(shares)
+    if not known.any():
+        return 1.0
+    return float(np.mean(np.abs(shares[known] - (np.abs(aside[known]) <= half_width))))
 
 
 def _mean_of(logs: FloatArray) -> float:

@@ -5,7 +5,7 @@ differs between two pictures with the arm in two places (vision/held.py): no col
 what lies or stands behind the claw does not move. Servos that tell where they are, are heard as well.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -28,6 +28,10 @@ SURE = 5.0
 """Log odds beyond which a verdict is given: a hundred and fifty to one."""
 BY_SERVO = 5.0
 """What a servo that stopped short of closing adds to the log odds."""
+MOST_DISAGREEMENT = 0.2
+"""Share of what was seen across the claw that no width of it explains, beyond which there is no verdict."""
+LOOKS = 2
+"""How often it is looked before it is left at not being sure."""
 STOPPED_SHORT = 0.006
 """Opening at which a claw that was told to close tells of something between its fingers [m]."""
 LEAST_THING = 0.018
@@ -72,14 +76,25 @@ async def look_whether_held(context: TaskContext, zero: ArmZero, thing_width: fl
     """Close the claw fully, look at it in two poses, and say whether there is something in it.
 
     thing_width [m]: as it was seen before, 0 for not known; knowing it makes the verdict surer. For a claw
-    lifted clear of what stands on the floor, with the base at rest; about 2 s. Raises MotionInterrupted when
-    it is stopped (the claw stays closed), LinkLost when the camera falls silent.
+    lifted clear of what stands on the floor, with the base at rest; about 2 s a look. Raises
+    MotionInterrupted when it is stopped (the claw stays closed), LinkLost when the camera falls silent.
     """
     if isinstance(zero.offsets, NoOffsets):
         return _unsure(f"the claw cannot be looked at: {zero.offsets.reason}")
     poses = view_poses(context.description, zero)
     if len(poses) < 2:
         return _unsure("the arm cannot show its claw to the camera in two places")
+    held = _unsure("it was not looked at")
+    for _ in range(LOOKS):
+        held = await _look(context, zero.offsets, poses, thing_width)
+        if held.verdict is not HeldVerdict.UNSURE:
+            break
+    return held
+
+
+async def _look(
+    context: TaskContext, offsets: ArmOffsets, poses: tuple[ArmJoints, ...], thing_width: float
+) -> Held:
     states: list[ArmState] = []
     unsubscribe = context.robot.arm.subscribe(states.append)
     pictures = []
@@ -92,9 +107,9 @@ async def look_whether_held(context: TaskContext, zero: ArmZero, thing_width: fl
     finally:
         unsubscribe()
     is_short = bool(states) and stopped_short(states[-1])
-    return await context.compute.call(
-        held_in, tuple(pictures), zero.offsets, context.description, is_short, thing_width
-    )
+    away, shown = pictures
+    arguments = (away, shown), offsets, context.description, is_short, thing_width
+    return await context.compute.call(held_in, *arguments)
 
 
 def view_poses(description: RobotDescription, zero: ArmZero) -> tuple[ArmJoints, ...]:
@@ -139,6 +154,8 @@ def held_in(
     least = max(LEAST_THING, _LEAST_SHARE * min(thing_width, description.arm.claw_max))
     width = claw_width(looks, finger + 0.001, finger + least / 2.0, widest)
     opening = max(0.0, 2.0 * (width.half_width - finger))
+    if width.disagreement > MOST_DISAGREEMENT and not is_short:
+        return replace(_unsure("something else moved beside the claw, or hides it"), opening=opening)
     return _verdict(width.log_odds + (BY_SERVO if is_short else 0.0), opening)
 
 
