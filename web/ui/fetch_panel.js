@@ -40,7 +40,7 @@ export class FetchPanel {
     byId("fetch-progress").setAttribute("value", String(progress));
     showVerdict(this.view);
     setText(byId("fetch-does"), stopped ? sentence(`stopped: ${stopped}`) : sentence(this.view.does));
-    setText(byId("fetch-why"), sentence(stopped ? condition : why));
+    setText(byId("fetch-why"), sentence(stopped ? condition : isSaid(why, this.view) ? "" : why));
     setText(byId("fetch-next"), next && !stopped ? `Next: ${next}` : "");
     this.showActs(this.view);
   }
@@ -79,4 +79,9 @@ function showVerdict({ verdict, reason, advice, seconds }) {
   const time = seconds === null ? "" : `, about ${Math.round(seconds)} s`;
   setText(line, verdict === null ? "Fetch" : VERDICT_WORDS[verdict] + (verdict === "no" ? "" : time));
   setText(byId("fetch-reason"), [reason, advice].filter(Boolean).map(sentence).join(". "));
+}
+
+/** Whether the verdict's reason says so already. @param {string} why @param {FetchView} view */
+function isSaid(why, { reason, advice }) {
+  return why === [reason, advice].filter(Boolean).join("; ");
 }

@@ -14,6 +14,7 @@ from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.fetch.thing import NoSize
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate import Locating
@@ -44,7 +45,9 @@ async def look(run: FetchRun) -> Ended:
     estimate = run.locating.estimate
     if estimate is None or estimate.status is not Status.DETERMINED:
         return Ended(Outcome.CANNOT, sentence)
-    await measure(run)
+    point = run.thing().point_in_world
+    run.measured(run.locating.size or NoSize("it was not measured"), point)
+    run.remember(point_in_world=point)
     return Ended(Outcome.DONE, sentence)
 
 
@@ -53,7 +56,7 @@ async def measure(run: FetchRun) -> None:
     locating = run.locating
     point = run.thing().point_in_world
     if locating is not None and locating.estimate is not None:
-        run.measured(await size_of(run.context, locating.estimate), point)
+        run.measured(await size_of(run.context, locating.estimate, run.memory.tap.box), point)
     run.remember(point_in_world=point)
 
 
