@@ -75,3 +75,13 @@ def test_pose_that_is_not_after_the_newest_is_refused():
 def test_history_for_less_than_two_poses_is_refused():
     with pytest.raises(InputError, match="capacity is 1"):
         PoseHistory(1)
+
+
+def test_poses_since_a_time_are_those_recorded_at_it_and_after():
+    history = PoseHistory()
+    for step in range(10):
+        history.add(step * 20 * MS, PlanarPose(0.1 * step, 0.0, 0.0))
+    assert [at_ns for at_ns, _ in history.since(130 * MS)] == [140 * MS, 160 * MS, 180 * MS]
+    assert history.since(140 * MS) == history.since(130 * MS)
+    assert history.since(181 * MS) == []
+    assert len(history.since(0)) == 10

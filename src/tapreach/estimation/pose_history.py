@@ -1,6 +1,6 @@
 """Where the base was when a frame was captured: poses by time, interpolated, in bounded memory."""
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections import deque
 
 from tapreach.errors import InputError, PoseExpired, PoseNotYetKnown
@@ -31,6 +31,11 @@ class PoseHistory:
         if not self._times:
             raise PoseNotYetKnown("no pose has been recorded yet")
         return self._times[-1], self._poses[-1]
+
+    def since(self, captured_ns: int) -> list[tuple[int, PlanarPose]]:
+        """Return the poses (captured_ns, pose) recorded at or after a time, oldest first."""
+        first = bisect_left(self._times, captured_ns)
+        return list(zip(self._times, self._poses, strict=True))[first:]
 
     def at(self, captured_ns: int) -> PlanarPose:
         """Return the pose at a time, on the arc between its neighbours.
