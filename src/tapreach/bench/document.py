@@ -16,6 +16,7 @@ Generated from `docs/benchmarks/*.json`, the last full run of each bench; to ren
     tapreach bench control --json docs/benchmarks/control.json
     tapreach bench accuracy --plot docs/benchmarks/accuracy.png --json docs/benchmarks/accuracy.json
     tapreach bench locate --jobs 2 --plot docs/benchmarks/locate.png --json docs/benchmarks/locate.json
+    tapreach bench fetch --jobs 2 --json docs/benchmarks/fetch.json
     tapreach bench online --json docs/benchmarks/online.json
     tapreach bench document
 

@@ -79,6 +79,7 @@ class RunningRobot:
     runner: TaskRunner
     context: TaskContext
     compute: WatchedCompute
+    loop: ControlLoop
     target: Target | None = None
     """The last that was shown."""
 
@@ -144,7 +145,7 @@ async def running_robot(
         show_fetch=show_fetch,
     )
     runner = TaskRunner(context, loop, lambda progress: None)
-    running = RunningRobot(clock, robot, runner, context, compute)
+    running = RunningRobot(clock, robot, runner, context, compute, loop)
     await robot.connect()
     lease.request(_OPERATOR)
     beside = [asyncio.create_task(_stay(deadman, clock)), asyncio.create_task(loop.run())]

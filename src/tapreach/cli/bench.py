@@ -11,8 +11,9 @@ from rich.console import Console
 
 from tapreach.bench import accuracy as accuracy_bench
 from tapreach.bench import control as control_bench
+from tapreach.bench import fetch as fetch_bench
+from tapreach.bench import fetch_plan, locate_plan, tracking_plan
 from tapreach.bench import locate as locate_bench
-from tapreach.bench import locate_plan, tracking_plan
 from tapreach.bench import online_path as online_bench
 from tapreach.bench import tracking as tracking_bench
 from tapreach.bench import video as video_bench
@@ -103,6 +104,45 @@ def locate(
     if smoke:
         plan = locate_plan.smoke_plan(used)
     _run(lambda on_section: locate_bench.run_locate(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def fetch(
+    smoke: Smoke = False,
+    scenes: Annotated[int, typer.Option(min=1, help="random rooms at each level of faults")] = 100,
+    refusals: Annotated[int, typer.Option(min=1, help="things that cannot be grasped")] = 60,
+    stops: Annotated[int, typer.Option(min=1, help="fetches that the operator stops")] = 200,
+    clutter: Annotated[int, typer.Option(min=1, help="fetches in cluttered rooms")] = 60,
+    comparisons: Annotated[int, typer.Option(min=0, help="so many rooms also in other ways")] = 40,
+    part: Annotated[fetch_plan.Chapter | None, typer.Option(help="run this one alone")] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="processes")] = 1,
+    minutes: Annotated[float, typer.Option(min=0.1, help="no run is begun later than this")] = 600.0,
+    keep: Annotated[Path | None, typer.Option(help="file of finished runs; goes on where it ends")] = None,
+    seed: FreshSeed = None,
+    failures: Annotated[Path | None, typer.Option(help="picture of the runs that went wrong (.jpg)")] = None,
+    json: Json = None,
+) -> None:
+    """One tap to the thing in the claw in the rendered simulator, against the truth. Many hours.
+
+    Each chapter alone by --part. The seed makes a run again.
+    """
+    used = _told(seed)
+    plan = fetch_plan.FetchBenchPlan(
+        used,
+        scenes,
+        refusals,
+        stops,
+        clutter,
+        comparisons,
+        jobs=jobs,
+        minutes=minutes,
+        chapter=part,
+        kept=keep,
+        failures=failures,
+    )
+    if smoke:
+        plan = fetch_plan.smoke_plan(used, part, keep, failures)
+    _run(lambda on_section: fetch_bench.run_fetch_bench(plan, on_section, MonotonicClock()), json)
 
 
 @bench.command()

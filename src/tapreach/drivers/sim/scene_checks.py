@@ -122,6 +122,9 @@ def _check_inside(
 
 
 def _is_separable(first: Corners, second: Corners, slack: float) -> bool:
+    low, high = np.maximum(first.min(axis=0), second.min(axis=0)), np.minimum(first.max(0), second.max(0))
+    if bool((high - low < slack).any()):  # quick, and true of most
+        return True
     for outline in (first, second):
         edges = np.roll(outline, -1, axis=0) - outline
         normals = np.column_stack([edges[:, 1], -edges[:, 0]])
