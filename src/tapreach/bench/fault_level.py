@@ -17,6 +17,9 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.resources import resource_path
 from tapreach.robot.config import RobotDescription, load_robot
 
+UNMEASURED_MS = 4.0
+"""What a robot file says of the times of pictures when nobody has measured them."""
+
 
 @dataclass(frozen=True)
 class FaultLevel:
@@ -77,6 +80,8 @@ class FaultLevel:
             }
         )
         camera = robot.camera.model_copy(update={"mount": mount, "rate_hz": rate_hz})
+        if self.camera_delay_ms:
+            camera = camera.model_copy(update={"timing_sigma_ms": UNMEASURED_MS})
         return robot.model_copy(update={"base": base, "camera": camera})
 
     def _slipping(self, distance_error: float, slip: float) -> float:

@@ -165,7 +165,8 @@ async def _track_px(running: RunningRobot, point: FloatArray) -> float | None:
     if not running.compute.sightings:
         return None
     last = running.compute.sightings[-1]
-    there = (await ask_truth(running.robot, last.captured_ns)).camera_pose.inv().apply(point)
+    taken_ns = running.context.camera_delay.taken_ns(last.captured_ns)
+    there = (await ask_truth(running.robot, taken_ns)).camera_pose.inv().apply(point)
     projection = running.robot.description.camera.model().project(there[None])
     if not projection.is_valid[0]:
         return None
@@ -195,7 +196,8 @@ def _by_paper(outcome: Outcome, task: FixedMove, before: Before, description: Ro
 
 async def _picture(running: RunningRobot, before: Before, outcome: Outcome, folder: Path) -> None:
     """Write the tapped frame and the newest one, with where the thing was followed to and where it is."""
-    truth = await ask_truth(running.robot, running.newest_frame.captured_ns)
+    taken_ns = running.context.camera_delay.taken_ns(running.newest_frame.captured_ns)
+    truth = await ask_truth(running.robot, taken_ns)
     point = _point_now(truth, before.surface)
     camera = running.robot.description.camera.model()
     pixel = camera.project(truth.camera_pose.inv().apply(point)[None]).pixels[0]

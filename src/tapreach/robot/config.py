@@ -48,9 +48,17 @@ class CameraSection(Section):
     cx: Finite | None = Field(None, description="the middle of the picture when left out")
     cy: Finite | None = None
     distortion: tuple[Finite, Finite, Finite, Finite, Finite] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    delay_ms: float = Field(0.0, ge=0, description="from the middle of the exposure to arrival on the host")
+    delay_ms: float = Field(
+        0.0,
+        ge=0,
+        description="from the middle of the exposure to arrival on the host, as far as known: the driver "
+        "takes it off the times of pictures; what is left the robot measures by itself",
+    )
     timing_sigma_ms: float = Field(
-        4.0, ge=0, description="how far a picture's time may be off against the wheels', one sigma"
+        4.0,
+        ge=0,
+        description="how far a picture's time may be off against the wheels', one sigma; from 2 ms on it is "
+        "measured at the first locating",
     )
     mount: MountSection
 
@@ -94,9 +102,9 @@ class BaseSection(Section):
     )
     outline: tuple[tuple[Finite, Finite], ...] = Field(
         (),
-        description="corners of the whole robot seen from above, x ahead and y left of the middle between the "
-        "wheels [m]; left out, it reaches around wheels and [[body]], and without [[body]] 0.10 m ahead and "
-        "0.15 m back",
+        description="corners of the whole robot seen from above, x ahead and y left of the middle between "
+        "the wheels [m]; left out, it reaches around wheels and [[body]], and without [[body]] 0.10 m ahead "
+        "and 0.15 m back",
     )
 
 

@@ -26,6 +26,8 @@ T = TypeVar("T")
 _RATE_OVER_NS = 40 * MS
 _SKIP_DISTANCE, _SKIP_ANGLE = 0.02, radians(2.0)
 _LEAST_KEPT = 4
+LATEST_NS = SECOND
+"""Pictures later than this are taken for pictures of now."""
 
 
 class TargetLost(TapreachError):
@@ -105,6 +107,7 @@ class Follower:
         Frames at rest share their errors, so that they count as one.
         """
         seen: list[Sighting] = []
+        await self._follow_what_is_on_its_way()
         for left in reversed(range(frames)):
             frame = await self._context.next_frame(self.frame_id)
             sighting = await self._follow(frame, is_stop=left == 0)
@@ -128,6 +131,17 @@ class Follower:
         self.doubt = checked.doubt
         if self.last.frame_id == self.frame_id:
             self.loss = ""
+
+    async def _follow_what_is_on_its_way(self) -> None:
+        """Follow the frames that were taken before now, until the next one is from now on."""
+        context, now_ns = self._context, self._context.clock.now_ns()
+        period_ns = round(SECOND / context.description.camera.rate_hz)
+        newest = context.frames.newest
+        while newest is not None and context.camera_delay.taken_ns(newest.captured_ns) < now_ns - period_ns:
+            if context.clock.now_ns() - now_ns > LATEST_NS:
+                return
+            newest = await context.next_frame(self.frame_id)
+            await self._follow(newest)
 
     async def _follow_next(self, moving: asyncio.Task[Any]) -> None:
         waiting = asyncio.ensure_future(self._context.next_frame(self.frame_id))
@@ -167,12 +181,15 @@ class Follower:
         )
 
     def _moved_px(self, captured_ns: int) -> float:
-        poses, camera = self._context.poses, self._context.description.camera
+        poses, delay = self._context.poses, self._context.camera_delay
+        camera = self._context.description.camera
+        taken_ns = delay.taken_ns(captured_ns)
         try:
-            step = poses.at(captured_ns - _RATE_OVER_NS).between(poses.at(captured_ns))
+            step = poses.at(taken_ns - _RATE_OVER_NS).between(poses.at(taken_ns))
         except PoseExpired:
             return 0.0
-        return sigma_of_timing(step, _RATE_OVER_NS / SECOND, camera)
+        timing_sigma = delay.timing_sigma(camera.timing_sigma_ms)
+        return sigma_of_timing(step, _RATE_OVER_NS / SECOND, camera, timing_sigma)
 
     def _worth_following(self, frames: list[Frame]) -> list[Frame]:
         """Return the frames between which the robot moved enough to matter, the newest one, and
@@ -188,8 +205,9 @@ class Follower:
         before_ns = kept.captured_ns if kept is not None else self.last.captured_ns
         if frame.captured_ns - before_ns >= SECOND:
             return True
+        poses, delay = self._context.poses, self._context.camera_delay
         try:
-            first, second = self._context.poses.at(before_ns), self._context.poses.at(frame.captured_ns)
+            first, second = (poses.at(delay.taken_ns(each)) for each in (before_ns, frame.captured_ns))
         except (PoseExpired, PoseNotYetKnown):
             return True
         return is_apart(first, second, _SKIP_DISTANCE, _SKIP_ANGLE)

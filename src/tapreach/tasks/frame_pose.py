@@ -9,13 +9,13 @@ _PATIENCE_NS = SECOND
 
 
 async def pose_at(context: TaskContext, captured_ns: int) -> PlanarPose:
-    """Return world_from_base at a time. Raises PoseExpired, and PoseNotYetKnown after waiting for a
-    second.
+    """Return world_from_base when a frame with this time stamp was truly taken, as far as the camera's delay
+    is known. Raises PoseExpired, and PoseNotYetKnown after waiting for a second.
     """
     until_ns = context.clock.now_ns() + _PATIENCE_NS
     while True:
         try:
-            return context.poses.at(captured_ns)
+            return context.poses.at(context.camera_delay.taken_ns(captured_ns))
         except PoseNotYetKnown:
             if context.clock.now_ns() >= until_ns:
                 raise

@@ -11,6 +11,7 @@ from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.geometry.ray import Ray
 from tapreach.robot.clock import MS
 from tapreach.tasks.aiming import aimed
+from tapreach.tasks.camera_delay import is_worth_measuring, know_delay
 from tapreach.tasks.candidate_moves import SHORTEST_ADVANCE
 from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
 from tapreach.tasks.extent import extent_of_thing
@@ -59,6 +60,8 @@ class LocateTask:
     async def run(self, context: TaskContext) -> str:
         """See Task. Raises FrameError, InputError, TargetLost, MotionInterrupted, LinkLost."""
         tap = await aimed(context, self._tap)
+        if is_worth_measuring(context):
+            await know_delay(context)
         follower = Follower(context, tap, key=self._target_id, uses_background=self._use_background)
         report = TargetReport(self._target_id, TargetSource.LOCATE, tap, context.description)
         try:

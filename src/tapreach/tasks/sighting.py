@@ -95,13 +95,13 @@ def _turned(vectors: FloatArray, poses: Sequence[PlanarPose]) -> FloatArray:
     return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
 
 
-def sigma_of_timing(step: PlanarPose, duration: float, camera: CameraSection) -> float:
+def sigma_of_timing(step: PlanarPose, duration: float, camera: CameraSection, timing_sigma: float) -> float:
     """Return one sigma [px] that motion adds: the picture's speed times the uncertainty of the frame's time.
 
-    step: how the base moved in the `duration` [s] before the frame.
+    step: how the base moved in the `duration` [s] before the frame. timing_sigma [s]: of that time.
     """
     turned, advanced = abs(wrapped(step.heading)), math.hypot(step.x, step.y)
-    return camera.fx * (turned + advanced / NEAREST) / duration * camera.timing_sigma_ms / 1000.0
+    return camera.fx * (turned + advanced / NEAREST) / duration * timing_sigma
 
 
 def is_apart(first: PlanarPose, second: PlanarPose, distance: float, angle: float) -> bool:
