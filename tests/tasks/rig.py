@@ -28,6 +28,7 @@ from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import Frame, Odometry
 from tapreach.tasks.compute import InlineCompute
+from tapreach.tasks.fetch.fetch_state import FetchState
 from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.runner import TaskProgress, TaskRunner
 from tapreach.tasks.target import Target
@@ -104,6 +105,7 @@ class Rig:
     targets: list[Target] = field(default_factory=list)
     moves: list[PlannedMove | None] = field(default_factory=list)
     progress: list[TaskProgress] = field(default_factory=list)
+    fetches: list[FetchState | None] = field(default_factory=list)
 
     async def advance(self, seconds: float) -> None:
         await self.clock.advance(round(seconds * SECOND))
@@ -143,6 +145,7 @@ async def running_rig(make_robot: Callable[[ManualClock], Robot]) -> AsyncIterat
         report=lambda report: None,
         show_target=lambda target: rig.targets.append(target),
         show_move=lambda move: rig.moves.append(move),
+        show_fetch=lambda state: rig.fetches.append(state),
     )
     runner = TaskRunner(context, loop, lambda progress: rig.progress.append(progress))
     rig = Rig(clock, robot, loop, runner, frames, context)
