@@ -27,6 +27,7 @@ from tapreach.server.targets import Targets
 from tapreach.server.task_desk import ComputeService, TaskDesk
 from tapreach.server.video_feed import VideoFeed
 from tapreach.tasks.compute import ComputeProcess
+from tapreach.tasks.delay_kept import DelayKept
 
 STATE_PERIOD_NS = 100 * MS
 POSE_LAG_NS = 50 * MS
@@ -44,6 +45,7 @@ class Station:
         self.clock = clock
         self.frames = FrameStore()
         self.poses = PoseHistory()
+        self.camera_delay = DelayKept()
         self.captures = CaptureFolder(captures)
         self.guests = Guests()
         self.hub = Hub()
@@ -107,11 +109,12 @@ class Station:
         return odometry.world_from_base if odometry else PlanarPose()
 
     def pose_at(self, captured_ns: int) -> PlanarPose | None:
-        """Return where the base was at that time; None where nobody knows."""
+        """Return where the base was when a frame of that time stamp was taken; None where nobody knows."""
+        taken_ns = self.camera_delay.taken_ns(captured_ns)
         try:
-            return self.poses.at(captured_ns)
+            return self.poses.at(taken_ns)
         except PoseNotYetKnown:
-            return self._newest_pose_unless_old(captured_ns)
+            return self._newest_pose_unless_old(taken_ns)
         except TapreachError:
             return None
 
@@ -142,11 +145,11 @@ class Station:
         """Tell every page to ask for the list again."""
         self.hub.tell("captures", CapturesChanged(newest=newest))
 
-    def _newest_pose_unless_old(self, captured_ns: int) -> PlanarPose | None:
+    def _newest_pose_unless_old(self, taken_ns: int) -> PlanarPose | None:
         if len(self.poses) == 0:
             return None
         newest_ns, pose = self.poses.newest()
-        return pose if captured_ns - newest_ns < POSE_LAG_NS else None
+        return pose if taken_ns - newest_ns < POSE_LAG_NS else None
 
     def _describe(self, frame: Frame) -> bytes:
         return self._projection.meta(

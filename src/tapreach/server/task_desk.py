@@ -61,6 +61,7 @@ class TaskDesk:
             show_target=self._show_target,
             show_move=station.planned_path.show,
             show_fetch=lambda state: self._fetch.show(state),
+            camera_delay=station.camera_delay,
         )
         self._runner = TaskRunner(self._context, station.loop, self._tell_progress)
         self._fetch = FetchDesk(station.hub, self._runner)

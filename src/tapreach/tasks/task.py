@@ -1,7 +1,7 @@
 """What a task is: a coroutine with phases that anyone can see and stop."""
 
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Protocol, TypeVar
 
@@ -13,6 +13,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.robot.frame_store import FrameStore
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import Frame
+from tapreach.tasks.delay_kept import DelayKept
 from tapreach.tasks.fetch.fetch_state import FetchState
 from tapreach.tasks.planned_move import PlannedMove
 from tapreach.tasks.target import Target
@@ -85,6 +86,8 @@ class TaskContext:
     """Show the move that is about to be made; None: it is over."""
     show_fetch: Callable[[FetchState | None], None] = lambda _: None
     """Show where fetching stands; None: nothing is being fetched or held."""
+    camera_delay: DelayKept = field(default_factory=DelayKept)
+    """How late pictures are beyond their stamps, as far as that was measured; shared by all tasks."""
 
 
 class Task(Protocol):

@@ -7,6 +7,7 @@ import numpy as np
 from tapreach.estimation.point_estimate import Status
 from tapreach.geometry.finite import FloatArray
 from tapreach.tasks.aiming import aimed
+from tapreach.tasks.camera_delay import know_delay
 from tapreach.tasks.fetch.fetch_state import FetchPlan, Mode
 from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.preview import ReachPreview, preview
@@ -36,6 +37,7 @@ async def look(run: FetchRun) -> Ended:
     context, target_id = run.context, run.memory.target_id
     await end_following(run)
     tap = await aimed(context, tap)
+    await know_delay(context)
     report = TargetReport(target_id, TargetSource.LOCATE, tap, context.description)
     run.locating = Locating(context, Follower(context, tap, key=target_id), report, ACCURACY)
     try:
