@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from tests.scenarios.running import tapreach_run
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
@@ -35,6 +36,8 @@ PAGES = [
     *sorted(ROOT.glob("docs/**/*.md")),
 ]
 EXAMPLES = sorted(ROOT.glob("examples/**/*.py"))
+WITH_ROBOT = [path for path in EXAMPLES if "tapreach.client" in path.read_text(encoding="utf-8")]
+WITHOUT_ROBOT = [path for path in EXAMPLES if path not in WITH_ROBOT]
 TAPREACH = Path(sys.executable).with_name("tapreach")
 SERVES = "# until Ctrl-C"
 BOUND_S = 120
@@ -108,14 +111,14 @@ def environment() -> dict[str, str]:
     return os.environ | {"COLUMNS": "120", "NO_COLOR": "1", "TERM": "dumb", "PYTHONUNBUFFERED": "1"}
 
 
-def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+def run(words: list[str], folder: Path, bound_s: float = BOUND_S) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         words,
         cwd=folder,
         env=environment(),
         capture_output=True,
         text=True,
-        timeout=BOUND_S,
+        timeout=bound_s,
         stdin=subprocess.DEVNULL,
     )
 
@@ -187,11 +190,20 @@ def test_data_of_a_page_parses(fence: Fence) -> None:
     json.loads(fence.body) if fence.language == "json" else tomllib.loads(fence.body)
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=name_of)
+@pytest.mark.parametrize("example", WITHOUT_ROBOT, ids=name_of)
 def test_example_runs(example: Path, tmp_path: Path) -> None:
     done = run([sys.executable, "-W", "error", str(example)], tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip(), "an example shows something"
+
+
+@pytest.mark.timeout(3 * BOUND_S)
+@pytest.mark.parametrize("example", WITH_ROBOT, ids=name_of)
+def test_example_runs_with_the_simulated_robot(example: Path, tmp_path: Path) -> None:
+    with tapreach_run(tmp_path, "--scene", "room") as robot:
+        done = run([sys.executable, "-W", "error", str(example), robot.address], tmp_path, 2 * BOUND_S)
+    assert done.returncode == 0, done.stderr
+    assert re.search("^(planned|refused|failed|stopped) .", done.stdout, re.MULTILINE), done.stdout
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)

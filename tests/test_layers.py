@@ -19,7 +19,7 @@ ROWS: dict[int, tuple[str, ...]] = {
     6: ("bench",),
     5: ("server",),
     4: ("tasks",),
-    3: ("control", "drivers", "recording"),
+    3: ("control", "drivers", "recording", "client"),
     2: ("robot", "estimation", "vision"),
     1: ("geometry",),
     0: ("errors", "resources"),
@@ -41,12 +41,17 @@ ONLY_IN: dict[str, set[str]] = {
     "typer": {"cli"},
     "cv2": {"vision", "drivers", "recording", "server", "bench", "cli"},
     "playwright": {"bench"},
+    "websockets": {"client", "bench"},
 }
 # Parts that may import nothing from outside but these (and the standard library).
 NOTHING_BUT: dict[str, set[str]] = {
     "geometry": {"numpy", "scipy"},
     "errors": set(),
     "resources": set(),
+}
+# Parts that may use nothing of the package but these: a client knows the robot by its messages alone.
+USES_ONLY: dict[str, tuple[str, ...]] = {
+    "client": ("errors", "geometry", "robot.clock", "vision.image_io"),
 }
 
 
@@ -106,9 +111,16 @@ def complaint(item: Import) -> str | None:
         return truth_complaint(importer, item)
     if ROW_OF[imported] >= ROW_OF[importer] and imported not in FOR_ALL:
         return f"{importer} (row {ROW_OF[importer]}) imports {imported} (row {ROW_OF[imported]})"
+    if not is_among(item.imported, USES_ONLY.get(importer)):
+        return f"{importer} imports {item.imported}; of the package it may use {USES_ONLY[importer]} alone"
     if imported == "drivers" and importer not in MAY_NAME_DRIVERS:
         return f"{importer} names drivers; only {sorted(MAY_NAME_DRIVERS)} may"
     return truth_complaint(importer, item)
+
+
+def is_among(module: str, allowed: tuple[str, ...] | None) -> bool:
+    """Whether the module is one of these or lies below one; for None everything is."""
+    return allowed is None or any(f"{module}.".startswith(f"tapreach.{name}.") for name in allowed)
 
 
 def truth_complaint(importer: str, item: Import) -> str | None:
@@ -179,6 +191,9 @@ def test_architecture_page_shows_the_same_rows() -> None:
         ("estimation/bound.py", "import cv2", "estimation imports cv2"),
         ("estimation/bound.py", "import mujoco", "estimation imports mujoco"),
         ("geometry/ray.py", "import pydantic", "geometry imports pydantic"),
+        ("client/news.py", "from tapreach.server import messages", "client (row 3) imports server (row 5)"),
+        ("client/sync.py", "from tapreach.robot.clocks import x", "client imports tapreach.robot.clocks"),
+        ("cli/fetch.py", "import websockets", "cli imports websockets"),
     ],
 )
 def test_violating_import_is_named(tmp_path: Path, importer: str, line: str, reason: str) -> None:

@@ -7,6 +7,7 @@ from rich.console import Console
 
 from tapreach.cli.bench import bench
 from tapreach.cli.estimate import estimate
+from tapreach.cli.fetch import fetch
 from tapreach.cli.run import run
 from tapreach.cli.two_tap import two_tap
 from tapreach.errors import TapreachError
@@ -20,6 +21,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.command()(run)
+app.command()(fetch)
 app.command("two-tap")(two_tap)
 app.command()(estimate)
 app.add_typer(bench)

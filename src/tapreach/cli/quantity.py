@@ -47,6 +47,17 @@ def read_tap(name: str, text: str) -> tuple[float, float]:
     return numbers[0], numbers[1] if len(numbers) == 2 else 0.0
 
 
+def read_pixels(name: str, text: str, example: str) -> list[float]:
+    """Return as many numbers [px] as the example has, such as "320,240". Raises InputError showing it."""
+    try:
+        numbers = [finite(name, float(part)) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != len(example.split(",")):
+        raise InputError(f"{name} is {text!r}; give it in pixels of the picture, like {example}")
+    return numbers
+
+
 def _read(name: str, text: str, units: dict[str, float], examples: str) -> float:
     value, unit = _split(name, text, examples)
     if unit not in units:
