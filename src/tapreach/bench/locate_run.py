@@ -24,6 +24,8 @@ from tapreach.geometry.gaussian import squared_mahalanobis
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.clock import SECOND, Clock, ManualClock
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.present_base import at_present
 from tapreach.tasks.runner import TaskProgress
 from tapreach.tasks.task import Tap, TaskState
 
@@ -142,15 +144,19 @@ def _judged(
 def _error_in_base(
     estimate: PointEstimate, running: RunningRobot, after: WorldTruth, point: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the error of the point (3,) [m] where the base is now, and its covariance (3, 3) [m²]."""
-    assert estimate.point_in_base is not None and estimate.point_cov_in_base is not None
-    last = running.compute.sightings[-1].world_from_base
-    now_from_last = running.context.poses.newest()[1].between(last).to_rigid()
+    """Return the error of the point (3,) [m] where the base is now, and its covariance (3, 3) [m²]: that of
+    the page, the way since the last sighting included.
+    """
+    assert isinstance(estimate, LocatedPoint)
+    here = running.context.poses.newest()[1]
+    present = at_present(estimate, here, running.robot.description)
+    assert present is not None
+    base_from_world = here.to_rigid().inv()
     true_in_base = RigidTransform.from_matrix(np.array(after.world_from_base)).inv().apply(point)
-    turn = now_from_last.rotation.as_matrix()
+    turn = base_from_world.rotation.as_matrix()
     return (
-        np.asarray(now_from_last.apply(estimate.point_in_base) - true_in_base),
-        np.asarray(turn @ estimate.point_cov_in_base @ turn.T),
+        np.asarray(base_from_world.apply(present.point_in_world) - true_in_base),
+        np.asarray(turn @ present.cov_in_world @ turn.T),
     )
 
 
