@@ -90,6 +90,8 @@ class DepthCheck:
         fit = fit.fused_with(expected[:, 2], covariance)
         sigma = max(_LEAST_SIGMA, seen_from_elsewhere(fit.covariance, fit.warp, self._loose))
         pixel = Pixel(*map(float, fit.warp[:, 2]))
+        if not pixel.is_inside(self._description.camera.model().size):
+            return None
         again = replace(view.sighting, pixel=pixel, sigma=sigma, scale=scale_of(fit.warp))
         if view.is_seen and _says_the_same_better(view.sighting, again, expected, covariance):
             return view.sighting
