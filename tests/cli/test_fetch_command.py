@@ -109,7 +109,7 @@ def test_without_a_server_it_says_how_to_start_one():
         (("--at", "nan,1"), "--at"),
         (("--at", "1,2", "--box", "1,2,3"), "--box is '1,2,3'"),
         (("--box", "1,2,3,4"), "at least 4 px"),
-        (("--at", "1,2", "--url", "https://x"), "https://x"),
+        (("--at", "1,2", "--url", "https://rover.test"), "https://rover.test"),
     ],
 )
 def test_place_that_makes_no_sense_is_named(arguments, message):
@@ -119,5 +119,5 @@ def test_place_that_makes_no_sense_is_named(arguments, message):
 
 
 def test_address_may_come_from_the_environment(monkeypatch):
-    monkeypatch.setenv("TAPREACH_URL", "gopher://robot")
-    assert "gopher://robot" in str(invoked(*PLACE).exception)
+    monkeypatch.setenv("TAPREACH_URL", "gopher://rover")
+    assert "gopher://rover" in str(invoked(*PLACE).exception)

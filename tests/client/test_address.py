@@ -12,7 +12,7 @@ from tapreach.errors import InputError
         ("http://localhost:8080/", "localhost", 8080, None),
         ("localhost:8080", "localhost", 8080, None),
         ("http://192.168.1.7:8080/?token=a-b_c", "192.168.1.7", 8080, "a-b_c"),
-        ("http://robot.local", "robot.local", 80, None),
+        ("http://rover.test", "rover.test", 80, None),
         ("http://[::1]:99/", "::1", 99, None),
     ],
 )
@@ -28,7 +28,8 @@ def test_token_travels_with_every_request_and_is_not_shown_to_people():
 
 
 @pytest.mark.parametrize(
-    "text", ["", "http://", "https://localhost/", "ftp://x", "http://h:port/", "h:99999"]
+    "text",
+    ["", "http://", "https://localhost/", "ftp://rover.test", "http://localhost:port/", "localhost:99999"],
 )
 def test_address_of_no_server_shows_a_right_one(text):
     with pytest.raises(InputError, match="http://localhost:8080/"):
