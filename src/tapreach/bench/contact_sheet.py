@@ -14,6 +14,7 @@ Picture = NDArray[np.uint8]
 RED, GREEN = (60, 60, 255), (80, 255, 80)
 _INK = (255, 255, 255)
 _COLUMNS, _MOST = 3, 60
+_RADIUS = 11
 _WIDTH, _LINE, _LETTERS = 560, 15, 95
 
 
@@ -23,9 +24,11 @@ def decoded(jpeg: bytes) -> Picture:
 
 
 def ring(picture: Picture, pixel: FloatArray, colour: tuple[int, int, int]) -> None:
-    """Draw a ring around a place (2,) [px], unless it is far outside."""
+    """Draw a ring with a white rim around a place (2,) [px], unless it is far outside."""
     if np.all(np.abs(pixel) < 1e4):
-        cv2.circle(picture, (round(float(pixel[0])), round(float(pixel[1]))), 9, colour, 2, cv2.LINE_AA)
+        middle = round(float(pixel[0])), round(float(pixel[1]))
+        cv2.circle(picture, middle, _RADIUS, _INK, 5, cv2.LINE_AA)
+        cv2.circle(picture, middle, _RADIUS, colour, 2, cv2.LINE_AA)
 
 
 def write_strip(path: Path, pictures: Sequence[Picture], lines: Sequence[str]) -> None:
@@ -35,7 +38,7 @@ def write_strip(path: Path, pictures: Sequence[Picture], lines: Sequence[str]) -
     strip = cv2.resize(side_by_side, (_WIDTH, height), interpolation=cv2.INTER_AREA)
     words = np.zeros((_LINE * len(lines) + 4, _WIDTH, 3), np.uint8)
     for row, line in enumerate(lines):
-        text = line[:_LETTERS].encode("ascii", "replace").decode()
+        text = _ascii(line[:_LETTERS])
         at = (4, 13 + _LINE * row)
         cv2.putText(words, text, at, cv2.FONT_HERSHEY_SIMPLEX, 0.36, _INK, 1, cv2.LINE_AA)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -54,6 +57,13 @@ def write_sheet(folder: Path, sheet: Path) -> int:
     sheet.parent.mkdir(parents=True, exist_ok=True)
     cv2.imwrite(str(sheet), np.vstack(rows), [cv2.IMWRITE_JPEG_QUALITY, 85])
     return len(strips)
+
+
+def _ascii(line: str) -> str:
+    """OpenCV's letters know no others."""
+    for sign, written in (("±", "+-"), ("°", " deg"), ("²", "2")):
+        line = line.replace(sign, written)
+    return line.encode("ascii", "replace").decode()
 
 
 def _padded(strip: Picture, height: int) -> Picture:
