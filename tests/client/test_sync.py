@@ -1,5 +1,6 @@
 """Blocking scripts, in processes of their own, against a real `tapreach run`: also killed and frozen ones."""
 
+import contextlib
 import json
 import signal
 import subprocess
@@ -49,8 +50,9 @@ class Watcher:
             self.news[message["type"]] = message
 
 
-@pytest.fixture
-def watcher(address):
+@contextlib.contextmanager
+def watching(address):
+    """Somebody who watches; to be read from soon, or the server gives up on them."""
     with open_socket(address.replace("http", "ws") + "ws/control", proxy=None) as socket:
         yield Watcher(socket)
 
@@ -69,7 +71,7 @@ def test_script_looks_and_asks_in_plain_calls(address):
         robot.emergency_reset()
 
 
-def test_what_is_raised_while_a_phase_is_shown_stops_the_robot(address, watcher):
+def test_what_is_raised_while_a_phase_is_shown_stops_the_robot(address):
     class Enough(Exception): ...
 
     def on_phase(phase):
@@ -78,13 +80,14 @@ def test_what_is_raised_while_a_phase_is_shown_stops_the_robot(address, watcher)
 
     with pytest.raises(Enough), connect(address, name="brief") as robot:
         robot.fetch(robot.snapshot().frame_id, 320, 300, on_phase=on_phase)
-    watcher.until(lambda news: news.get("task", {}).get("state") == "cancelled")
-    watcher.until(lambda news: news["state"]["lease"]["holder_id"] is None)
+    with watching(address) as watcher:
+        watcher.until(lambda news: news.get("task", {}).get("state") == "cancelled")
+        watcher.until(lambda news: news["state"]["lease"]["holder_id"] is None)
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_script_that_is_ended_leaves_the_robot_at_rest_and_free(address, watcher, number):
-    with doomed(address) as script:
+def test_script_that_is_ended_leaves_the_robot_at_rest_and_free(address, number):
+    with doomed(address) as script, watching(address) as watcher:
         watcher.until(runs)
         script.send_signal(number)
         script.wait(timeout=30)
@@ -93,8 +96,8 @@ def test_script_that_is_ended_leaves_the_robot_at_rest_and_free(address, watcher
         watcher.until(at_rest)
 
 
-def test_script_that_is_frozen_stops_the_robot(address, watcher):
-    with doomed(address) as script:
+def test_script_that_is_frozen_stops_the_robot(address):
+    with doomed(address) as script, watching(address) as watcher:
         watcher.until(runs)
         script.send_signal(signal.SIGSTOP)
         watcher.until(lambda news: news["task"]["state"] == "cancelled")
