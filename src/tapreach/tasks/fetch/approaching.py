@@ -15,6 +15,9 @@ from tapreach.tasks.follower import TargetLost
 MOST_LEGS = 10
 BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
+LOOK_ANEW_SD = 0.02
+"""A thing in sight whose place is known worse [m], one sigma, is located anew from near."""
+MOST_LOOKS = 3
 LONGEST_LEG = 0.4
 """Farther than this the thing is not driven towards without planning anew [m]."""
 NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.03, math.radians(3.0)
@@ -45,6 +48,9 @@ async def last_look(run: FetchRun) -> Ended:
         return Ended(
             Outcome.LOST, f"lost the thing, its place is known to ±{2000.0 * sd:.0f} mm only: {loss}"
         )
+    if sd > LOOK_ANEW_SD and run.memory.looks < MOST_LOOKS:
+        run.remember(looks=run.memory.looks + 1)
+        return Ended(Outcome.UNSURE, f"its place is known to ±{2000.0 * sd:.0f} mm only: located anew")
     await measure(run)
     seen = run.preview = await previewed(run, is_last_look=True)
     if seen.verdict is Verdict.NO or seen.approach is None:

@@ -13,6 +13,7 @@ from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.preview import ReachPreview, preview
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
+from tapreach.tasks.fetch.seen_obstacles import seen_obstacles
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import NoSize
@@ -69,14 +70,22 @@ async def judge_reach(run: FetchRun) -> Ended:
         return Ended(Outcome.CANNOT, in_words(seen))
     if run.memory.mode is Mode.PLAN:
         return Ended(Outcome.PLAN_ONLY, in_words(seen))
-    asks = run.memory.mode is Mode.CONFIRM and run.memory.attempt == 1
+    asks = run.memory.mode is Mode.CONFIRM and run.memory.attempt == run.memory.looks == 1
     return Ended(Outcome.ASK if asks else Outcome.DONE, in_words(seen))
 
 
 async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
-    """Return the preview from where the base is now."""
+    """Return the preview from where the base is now: round what is told and what the pictures show, if a way
+    leads there; else round what is told. What is seen may be wrong, and shall not end a fetch.
+    """
+    thing, estimate = run.thing(), run.locating.estimate if run.locating is not None else None
     plan = partial(preview, free_behind=way_behind(run.context.poses), is_last_look=is_last_look)
-    return await run.context.compute.call(plan, run.thing(), run.others, run.here, run.context.description)
+    seen = () if estimate is None else await seen_obstacles(run.context, estimate, thing)
+    for obstacles in ((*run.others, *seen), tuple(run.others)):
+        found = await run.context.compute.call(plan, thing, obstacles, run.here, run.context.description)
+        if found.approach is not None or not seen:
+            break
+    return found
 
 
 def plan_of(seen: ReachPreview) -> FetchPlan:

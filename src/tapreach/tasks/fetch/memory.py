@@ -15,9 +15,10 @@ from tapreach.tasks.task import Tap
 class FetchMemory:
     """Replaced as fetching goes on; the world is that of the present odometry.
 
-    tap: on the frame that names the thing. called_from: where the base stood when it was called. point (3,)
-    [m]: the tapped place, None before it is located. gripped_at: the arm's pose when the claw closed, None
-    while nothing has been gripped. zero: the arm as it was seen. way: where the base has been since.
+    tap: on the frame that names the thing. attempt, looks: of gripping and of locating, counted from 1.
+    called_from: where the base stood when it was called. point_in_world (3,) [m]: the tapped place, None
+    before it is located. gripped_at: the arm's pose when the claw closed, None while nothing has been
+    gripped. zero: the arm as it was seen. way: where the base has been since.
     """
 
     tap: Tap
@@ -25,6 +26,7 @@ class FetchMemory:
     mode: Mode
     phase: Phase = FIRST
     attempt: int = 1
+    looks: int = 1
     called_from: PlanarPose | None = None
     point_in_world: FloatArray | None = None
     gripped_at: ArmPose | None = None

@@ -42,7 +42,9 @@ class Outcome(StrEnum):
     LOST = "lost"
     """The thing is not seen any more, or is not where it was."""
     MISSED = "missed"
-    """The claw has nothing in it."""
+    """The claw has nothing in it; at the last look: it is to be gripped from elsewhere."""
+    UNSURE = "unsure"
+    """It is seen, but where it is is not known well enough."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ STATES: Mapping[Phase, State] = {
         {
             Outcome.DONE: Phase.REACH,
             Outcome.MISSED: Phase.APPROACH,
+            Outcome.UNSURE: Phase.LOOK,
             Outcome.LOST: Phase.FAILED,
             Outcome.CANNOT: Phase.REFUSED,
         },
