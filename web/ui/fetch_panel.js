@@ -72,13 +72,14 @@ export class FetchPanel {
   }
 }
 
-/** @param {FetchView} view */
-function showVerdict({ verdict, reason, advice, seconds }) {
+/** What could be done, until it is done. @param {FetchView} view */
+function showVerdict({ phase, verdict, reason, advice, seconds }) {
+  const isHeld = phase === "held";
   const line = byId("fetch-verdict");
   line.dataset.verdict = verdict ?? "";
-  const time = seconds === null ? "" : `, about ${Math.round(seconds)} s`;
-  setText(line, verdict === null ? "Fetch" : VERDICT_WORDS[verdict] + (verdict === "no" ? "" : time));
-  setText(byId("fetch-reason"), [reason, advice].filter(Boolean).map(sentence).join(". "));
+  const time = seconds === null || verdict === "no" ? "" : `, about ${Math.round(seconds)} s`;
+  setText(line, isHeld ? "Held" : verdict === null ? "Fetch" : VERDICT_WORDS[verdict] + time);
+  setText(byId("fetch-reason"), isHeld ? "" : [reason, advice].filter(Boolean).map(sentence).join(". "));
 }
 
 /** Whether the verdict's reason says so already. @param {string} why @param {FetchView} view */
