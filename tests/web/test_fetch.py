@@ -88,7 +88,7 @@ def test_after_a_stop_the_page_says_how_the_robot_stands_and_offers_to_go_on(ser
 def test_what_can_be_done_with_a_held_thing(server, open_page, name, verb):
     page = open_page()
     server.push(FETCH | NOT_WAITING | {"phase": "held", "verbs": ["bring_back", "put_down", "hand_over"]})
-    assert page.locator("#fetch-verdict").inner_text() == "Held"
+    page.wait_for_selector("#fetch-verdict:text-is('Held')")
     page.click(f"#fetch-acts >> text={name}")
     assert server.wait_for("fetch_verb")["verb"] == verb
 
