@@ -60,10 +60,6 @@ class DepthGeometry:
         root = by_point[0] @ (by_mount - by_base)
         return np.asarray(root @ root.T)
 
-    def range_of(self, inverse_depth: float) -> float:
-        """Return the distance [m] from the tapped camera at a depth of its own."""
-        return float(np.linalg.norm(self._corners[0])) / inverse_depth
-
 
 def _matrix(pose: PlanarPose) -> FloatArray:
     c, s = math.cos(pose.heading), math.sin(pose.heading)

@@ -1,5 +1,8 @@
 """The table of fetching is whole: every state can be reached, every way comes to an end."""
 
+import inspect
+import re
+
 import pytest
 
 from tapreach.errors import InputError
@@ -13,6 +16,7 @@ from tapreach.tasks.fetch.states import (
     next_phase,
     resumed_at,
 )
+from tapreach.tasks.fetch.task import _STEPS
 
 
 def _reached_from(start: Phase) -> set[Phase]:
@@ -65,3 +69,10 @@ def test_progress_only_falls_when_it_tries_again() -> None:
             anew = (Outcome.MISSED, Outcome.CANNOT, Outcome.UNSURE)
             tries_again = phase is Phase.BACK_OFF or outcome in anew
             assert rises or tries_again, (phase, outcome)
+
+
+@pytest.mark.parametrize("phase", _STEPS)
+def test_a_phase_ends_only_in_ways_that_the_table_has(phase: Phase) -> None:
+    named = {Outcome[name] for name in re.findall(r"Outcome\.([A-Z_]+)", inspect.getsource(_STEPS[phase]))}
+    assert named
+    assert named <= set(STATES[phase].after), phase

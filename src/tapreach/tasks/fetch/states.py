@@ -133,7 +133,7 @@ STATES: Mapping[Phase, State] = {
     Phase.LIFT: State(
         "lifts",
         0.85,
-        {Outcome.DONE: Phase.VERIFY},
+        {Outcome.DONE: Phase.VERIFY, Outcome.CANNOT: Phase.BACK_OFF},
         "the robot stands, the claw holds what it has, at the height where it is",
         Phase.LIFT,
     ),
