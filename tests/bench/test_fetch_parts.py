@@ -9,9 +9,10 @@ import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from tapreach.bench.fault_level import DEFAULT, HARD
-from tapreach.bench.fetch_figures import chapter_section, reasons_section
+from tapreach.bench.fetch_arms import ARM_TASKS
+from tapreach.bench.fetch_figures import beside_section, chapter_section, reasons_section
 from tapreach.bench.fetch_outcome import FetchOutcome, PhaseEntry, StopOutcome
-from tapreach.bench.fetch_plan import Chapter, FetchBenchPlan, generator
+from tapreach.bench.fetch_plan import Arm, Chapter, FetchBenchPlan, generator
 from tapreach.bench.fetch_scene import varied_scene
 from tapreach.bench.fetch_stage import draw_fetch_stage
 from tapreach.bench.fetch_truth import Standing, foot_height, is_between_fingers
@@ -20,6 +21,8 @@ from tapreach.bench.kept import Kept
 from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.truth import ObjectTruth, WorldTruth
 from tapreach.tasks.fetch.states import Phase
+from tapreach.tasks.fetch.ways import Ways
+from tapreach.tasks.task import Tap
 
 GOOD = FetchOutcome(
     chapter=Chapter.DEFAULT.value, number=3, arm="the whole of it", scene="random", thing="red can",
@@ -152,6 +155,23 @@ def test_reasons_are_counted_without_their_numbers() -> None:
     grid = reasons_section(Chapter.DEFAULT, [GOOD, MISSED, other]).grid
     assert grid is not None
     assert grid.rows == (("2", "failed after verify", "it slipped N mm"),)
+
+
+def test_arms_are_set_beside_each_other_over_the_runs_that_all_did() -> None:
+    missed = replace(MISSED, arm=Arm.FIXED_MOVE.value)
+    section = beside_section([GOOD, replace(missed, number=GOOD.number), replace(GOOD, number=9)])
+    assert [(row[0], *row[1:3]) for row in section.grid.rows] == [
+        (GOOD.arm, "1", "1"),
+        (missed.arm, "1", "0"),
+    ]
+    assert [figure.value for figure in section.figures] == [100.0, 0.0]
+
+
+def test_every_arm_leaves_out_another_part() -> None:
+    assert set(ARM_TASKS) == set(Arm)
+    ways = [ARM_TASKS[arm](Tap(1, 2.0, 3.0)).ways for arm in Arm]
+    assert ways[0] == Ways()
+    assert len(set(ways)) == len(ways)
 
 
 def test_kept_runs_are_read_again(tmp_path) -> None:

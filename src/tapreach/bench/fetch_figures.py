@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from tapreach.bench.control_stop import AT_ONCE_MS
-from tapreach.bench.fetch_method import METHOD, TITLE
+from tapreach.bench.fetch_method import ARMS_METHOD, METHOD, TITLE
 from tapreach.bench.fetch_outcome import FetchOutcome, StopOutcome
 from tapreach.bench.fetch_plan import Chapter
 from tapreach.bench.fetch_table import COLUMNS, cells, grid, reasons
@@ -43,8 +43,13 @@ def beside_section(outcomes: Sequence[FetchOutcome]) -> Section:
     runs = set.intersection(*({each.number for each in outcomes if each.arm == arm} for arm in arms))
     shared = [outcome for outcome in outcomes if outcome.number in runs]
     rows = tuple((arm, *cells([each for each in shared if each.arm == arm])) for arm in arms)
-    method = "The same rooms, taps and faults; in each arm one part of the whole is left out."
-    return Section("What each part contributes", method, (), Grid(("what is done", *COLUMNS), rows))
+    figures = tuple(_share_held(arm, [each for each in shared if each.arm == arm]) for arm in arms)
+    return Section("What each part contributes", ARMS_METHOD, figures, Grid(("what is done", *COLUMNS), rows))
+
+
+def _share_held(arm: str, own: Sequence[FetchOutcome]) -> Figure:
+    held = _percent(own, lambda each: each.is_held)
+    return Figure(f"{arm}: lifted and held for 2 s", held, "%", note=f"{len(own)} runs")
 
 
 def _fetched(own: Sequence[FetchOutcome], least: float) -> tuple[tuple[Figure, ...], Grid]:

@@ -23,6 +23,9 @@ class Arm(StrEnum):
     """What is done about the same tap."""
 
     FULL = "the whole of it"
+    WITHOUT_BACKGROUND = "no background"
+    WITHOUT_RENEWING = "no estimating on the way"
+    FIXED_MOVE = "fixed move"
 
 
 @dataclass(frozen=True)

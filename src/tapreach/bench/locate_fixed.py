@@ -2,23 +2,21 @@
 
 import math
 from dataclasses import dataclass
-from math import radians
 
 from tapreach.estimation.two_tap import two_tap_from_pixels
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import estimate
+from tapreach.tasks.fixed_move import fixed_step
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.task import Tap, TaskContext
-
-TURN, ADVANCE = radians(12.0), 0.20
 
 
 @dataclass
 class FixedMove:
     """A task: turn by 12 degrees and drive 20 cm; the tapped place is followed, which stands for the second
-    tap. Left as in the paper; right where a turn to the left would take it out of the picture.
+    tap.
 
     sightings: the tapped frame and the last stop. The estimate rests on these, and on the frames from which
     the background was seen.
@@ -38,8 +36,9 @@ class FixedMove:
             await follower.catch_up()
             arm = context.description.arm.standard.pose()
             await follower.during(context.pilot.move_arm(arm), _nothing)
-            await follower.during(context.pilot.turn(_turn(first, context.description)), _nothing)
-            await follower.during(context.pilot.advance(ADVANCE), _nothing)
+            step = fixed_step(first, context.description)
+            await follower.during(context.pilot.turn(step.turn), _nothing)
+            await follower.during(context.pilot.advance(step.advance), _nothing)
             last = await follower.look()
             if last is None:
                 raise TargetLost(f"lost the tapped place: {follower.loss}")
@@ -53,13 +52,6 @@ class FixedMove:
 
 async def _nothing() -> None:
     pass
-
-
-def _turn(first: Sighting, description: RobotDescription) -> float:
-    """Return 12 degrees to the left, or to the right for what stands too far right for that."""
-    camera = description.camera.model()
-    shift = TURN * camera.fx
-    return TURN if first.pixel.u + shift < 0.9 * camera.size.width else -TURN
 
 
 def paper_range(first: Sighting, last: Sighting, description: RobotDescription) -> float | None:

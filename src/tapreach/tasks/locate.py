@@ -17,6 +17,7 @@ from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
 from tapreach.tasks.extent import extent_of_thing
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tapreach.tasks.fixed_move import fixed_step
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
@@ -72,15 +73,24 @@ class LocateTask:
 
 
 class Locating:
-    """One run of the task, on a tap that `aimed` has seen; a task that goes on with the thing keeps it."""
+    """One run of the task, on a tap that `aimed` has seen; a task that goes on with the thing keeps it.
+
+    is_fixed: makes the paper's move, whatever it brings, instead of chosen ones.
+    """
 
     def __init__(
-        self, context: TaskContext, follower: Follower, report: TargetReport, accuracy: float
+        self,
+        context: TaskContext,
+        follower: Follower,
+        report: TargetReport,
+        accuracy: float,
+        is_fixed: bool = False,
     ) -> None:
         self._context = context
         self._follower = follower
         self._report = report
         self._accuracy = accuracy
+        self._is_fixed = is_fixed
         self._stops: list[Sighting] = []
         self._estimate: LocatedPoint | None = None
         self._driven = 0.0
@@ -108,7 +118,7 @@ class Locating:
         self._stops.append(await self._follower.open())
         self._show()
         await self._follower.catch_up()
-        end = await self._refine()
+        end = await (self._make_fixed() if self._is_fixed else self._refine())
         await self._renew(with_advice=end not in (End.REACHED, End.LOST))
         await self._measure()
         return self._conclusion(end)
@@ -160,6 +170,16 @@ class Locating:
             if self._way_left < SHORTEST_ADVANCE:
                 break
         return End.WAY_USED_UP
+
+    async def _make_fixed(self) -> End:
+        """Make the paper's move to its end and look."""
+        step = fixed_step(self._stops[0], self._context.description)
+        self._say("move", 0.1, "making the paper's move")
+        self._driven += step.advance
+        await self.drive(self._context.pilot.move(step, self._context.description.arm.standard.pose()))
+        if is_accurate(self._estimate, self._accuracy):
+            return End.REACHED
+        return End.LOST if self._follower.loss else End.WAY_USED_UP
 
     async def _make(self, planned: PlannedMove) -> None:
         """Make the move as far as it has a purpose, once the arm is out of the picture; look."""

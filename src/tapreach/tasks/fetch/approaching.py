@@ -48,7 +48,7 @@ async def last_look(run: FetchRun) -> Ended:
         return Ended(
             Outcome.LOST, f"lost the thing, its place is known to ±{2000.0 * sd:.0f} mm only: {loss}"
         )
-    if sd > LOOK_ANEW_SD and run.memory.looks < MOST_LOOKS:
+    if run.ways.renews_on_way and sd > LOOK_ANEW_SD and run.memory.looks < MOST_LOOKS:
         run.remember(looks=run.memory.looks + 1)
         return Ended(Outcome.UNSURE, f"its place is known to ±{2000.0 * sd:.0f} mm only: located anew")
     await measure(run)
@@ -79,8 +79,11 @@ def next_leg(approach: Approach) -> Leg | None:
 
 
 async def drive(run: FetchRun, leg: Leg) -> None:
-    """Drive a leg with the arm folded, following the thing and estimating on. Raises TargetLost."""
+    """Drive a leg with the arm folded, following the thing and estimating on (see Ways). Raises
+    TargetLost.
+    """
     assert run.locating is not None
     run.remember(way=(*run.memory.way, run.here))
     folded = run.context.description.arm.standard.pose()
-    await run.locating.drive(run.context.pilot.move(leg.step, folded))
+    motion = run.context.pilot.move(leg.step, folded)
+    await (run.locating.drive(motion) if run.ways.renews_on_way else motion)

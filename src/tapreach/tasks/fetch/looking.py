@@ -40,7 +40,8 @@ async def look(run: FetchRun) -> Ended:
     tap = await aimed(context, tap)
     await know_delay(context)
     report = TargetReport(target_id, TargetSource.LOCATE, tap, context.description)
-    run.locating = Locating(context, Follower(context, tap, key=target_id), report, ACCURACY)
+    follower = Follower(context, tap, key=target_id, uses_background=run.ways.use_background)
+    run.locating = Locating(context, follower, report, ACCURACY, run.ways.fixed_move)
     try:
         sentence = await run.locating.run()
     except TargetLost as lost:

@@ -16,6 +16,7 @@ from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.preview import ReachPreview
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
+from tapreach.tasks.fetch.ways import Ways
 from tapreach.tasks.locate import Locating
 from tapreach.tasks.present_base import at_present
 from tapreach.tasks.task import TaskContext
@@ -44,6 +45,7 @@ class FetchRun:
     memory: FetchMemory
     others: Sequence[Obstacle]
     arm_watch: ArmWatch
+    ways: Ways = field(default_factory=Ways)
     locating: Locating | None = None
     size: ThingSize | NoSize = field(default_factory=lambda: NoSize("it has not been measured yet"))
     axis_offset: FloatArray | None = None

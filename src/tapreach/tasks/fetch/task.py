@@ -16,6 +16,7 @@ from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import STATES, Outcome, Phase, is_end, next_phase, resumed_at
 from tapreach.tasks.fetch.verifying import verify
+from tapreach.tasks.fetch.ways import Ways
 from tapreach.tasks.fetch.zeroing import zero
 from tapreach.tasks.target import Target
 from tapreach.tasks.task import Tap, TaskContext, TaskReport
@@ -32,7 +33,7 @@ class FetchTask:
     """Fetch what was tapped, as far as `mode` says. Shows the target under `target_id`.
 
     others: targets that are known beside it; they are kept clear of. zero: the arm as an earlier fetch has
-    seen it; None: it is looked at.
+    seen it; None: it is looked at. ways: what it makes use of.
     """
 
     kind = "fetch"
@@ -44,9 +45,11 @@ class FetchTask:
         mode: Mode = Mode.GO,
         others: Sequence[Target] = (),
         zero: ArmZero | None = None,
+        ways: Ways | None = None,
     ) -> None:
         self.memory = FetchMemory(tap, target_id, mode, zero=zero)
         self._others = tuple(others)
+        self.ways = ways or Ways()
         self._confirmed = asyncio.Event()
 
     def confirm(self) -> None:
@@ -55,14 +58,15 @@ class FetchTask:
 
     def resumed(self, others: Sequence[Target]) -> "FetchTask":
         """Return the task that goes on where this one was stopped."""
-        task = FetchTask(self.memory.tap, self.memory.target_id, self.memory.mode, others)
-        task.memory = replace(self.memory, phase=resumed_at(self.memory.phase) or self.memory.phase)
+        memory = self.memory
+        task = FetchTask(memory.tap, memory.target_id, memory.mode, others, ways=self.ways)
+        task.memory = replace(memory, phase=resumed_at(memory.phase) or memory.phase)
         return task
 
     async def run(self, context: TaskContext) -> str:
         """See Task. Raises FetchFailed, and whatever locating and moving raise."""
         obstacles = [each for each in map(Obstacle.of_target, self._others) if each is not None]
-        run = FetchRun(context, self.memory, obstacles, ArmWatch(context.robot.arm))
+        run = FetchRun(context, self.memory, obstacles, ArmWatch(context.robot.arm), self.ways)
         try:
             return await self._carry_out(run)
         finally:
