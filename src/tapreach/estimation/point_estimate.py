@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from tapreach.estimation.point_in_frames import TargetInFrames
+from tapreach.estimation.point_in_frames import GivenInFrames, TargetInFrames
 from tapreach.geometry.finite import FloatArray
 
 
@@ -45,7 +45,7 @@ class PointEstimate:
     range_interval_95: tuple[float, float | None] | None
     residuals_px: FloatArray
     rejected_views: tuple[int, ...]
-    in_frames: TargetInFrames | None = field(repr=False, compare=False)
+    in_frames: TargetInFrames | GivenInFrames | None = field(repr=False, compare=False)
 
     @property
     def point_in_world(self) -> FloatArray | None:

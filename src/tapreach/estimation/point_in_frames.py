@@ -23,6 +23,19 @@ class UncertainPoint:
     point: FloatArray
     covariance: FloatArray
 
+    def moved(self, matrix: FloatArray) -> "UncertainPoint":
+        """Return it in another frame; matrix (4, 4): of the rigid transform there, taken as exact."""
+        rotation = matrix[:3, :3]
+        return UncertainPoint(rotation @ self.point + matrix[:3, 3], rotation @ self.covariance @ rotation.T)
+
+
+@dataclass(frozen=True, eq=False)
+class GivenInFrames:
+    """The target in the world and in the base at the last observation, from elsewhere than a solution."""
+
+    world: UncertainPoint
+    base: UncertainPoint
+
 
 @dataclass(frozen=True)
 class _Place:

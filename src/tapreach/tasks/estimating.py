@@ -1,7 +1,7 @@
 """From sightings to an estimate; module-level functions so that `Compute.call` can name them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 
 import numpy as np
@@ -11,6 +11,7 @@ from tapreach.estimation.map_estimator import estimate_point
 from tapreach.estimation.point_estimate import PointEstimate
 from tapreach.geometry.finite import FloatArray
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.known_place import KnownPlace, from_one_view, with_known_place
 from tapreach.tasks.robot_noise import mount_noise as mount_noise
 from tapreach.tasks.robot_noise import odometry_noise as odometry_noise
 from tapreach.tasks.sighting import Sighting, observation_of
@@ -65,20 +66,36 @@ def estimate(
     description: RobotDescription,
     with_advice: bool,
     is_newest_unconfirmed: bool = False,
+    known: KnownPlace | None = None,
 ) -> LocatedPoint:
     """Return where the target of the sightings is, with everything that the robot's file and the background
     say of its motion.
 
-    is_newest_unconfirmed: the last one counts where it fits, and says nothing of the way where it does not.
+    sightings: two or more, or one where the target's place was `known` before. is_newest_unconfirmed: the
+    last one counts where it fits, and says nothing of the way where it does not.
     """
+    if len(sightings) == 1 and known is not None:
+        return _from_one(sightings[0], known, description)
     straight, found = _estimated(sightings, description, with_advice)
     since = _last_before_contradiction(found, len(sightings))
     if since is not None and is_newest_unconfirmed:
-        return estimate(sightings[:-1], description, with_advice)
+        return estimate(sightings[:-1], description, with_advice, known=known)
     if since is not None:
         straight, found = _estimated(sightings, description, with_advice, slipped_since=since)
-    values = {field.name: getattr(found, field.name) for field in fields(found)}
+    if known is not None:
+        found = with_known_place(found, straight.sightings, known, description)
     source = HeadingSource.BACKGROUND if not straight.reason else HeadingSource.WHEELS
+    return _located(found, straight, source)
+
+
+def _from_one(sighting: Sighting, known: KnownPlace, description: RobotDescription) -> LocatedPoint:
+    """Return what one view says of a place known before; nothing was driven, and nothing is said of it."""
+    straight = replace(straightened([sighting], description), reason="")
+    return _located(from_one_view(sighting, known, description), straight, HeadingSource.BACKGROUND)
+
+
+def _located(found: PointEstimate, straight: Straightened, source: HeadingSource) -> LocatedPoint:
+    values = {field.name: getattr(found, field.name) for field in fields(found)}
     return LocatedPoint(
         **values,
         sightings=straight.sightings,

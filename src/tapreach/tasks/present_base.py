@@ -5,18 +5,11 @@ sure (docs/decisions/0005).
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from tapreach.estimation.odometry_noise import pose_errors
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import LocatedPoint
-from tapreach.tasks.robot_noise import odometry_noise
-from tapreach.tasks.sighting import is_apart
-
-_AT_REST = 0.001, math.radians(0.1)
-"""A way as short as that of a base which settles [m, rad]: its direction says nothing."""
+from tapreach.tasks.way_error import by_way
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,18 +36,5 @@ def at_present(found: LocatedPoint, here: PlanarPose, description: RobotDescript
     point, covariance = found.point_in_world, found.point_cov_in_world
     if point is None or covariance is None:
         return None
-    by_way = _by_way(found.sightings[-1].world_from_base, here, point, description)
-    return PresentPoint(point, covariance + by_way, by_way)
-
-
-def _by_way(
-    start: PlanarPose, here: PlanarPose, point: FloatArray, description: RobotDescription
-) -> FloatArray:
-    if not is_apart(start, here, *_AT_REST):
-        return np.zeros((3, 3))
-    way_errors = pose_errors([start, here], odometry_noise(description))[1]
-    # An error (x, y, heading) of the present base moves what stands still the other way.
-    c, s = math.cos(here.heading), math.sin(here.heading)
-    aside, ahead = point[1] - here.y, point[0] - here.x
-    moved_by = np.array([[-c, s, aside], [-s, -c, -ahead], [0.0, 0.0, 0.0]]) @ way_errors
-    return np.asarray(moved_by @ moved_by.T)
+    added = by_way(found.sightings[-1].world_from_base, here, point, description)
+    return PresentPoint(point, covariance + added, added)
