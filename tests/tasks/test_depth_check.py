@@ -212,3 +212,20 @@ def test_watch_goes_on_from_where_the_check_found_the_place():
         close_track(77)
     with pytest.raises(TrackUnknown):
         check(77)
+
+
+def test_place_that_grew_past_comparing_stays_as_it_was_followed():
+    """Near views that the tapped patch cannot be fitted to any more count for less, and are not thrown away."""
+    views = kept([DEPTH] * 6)
+    near = PlanarPose(0.45, 0.0, -0.1)
+    blurred = cv2.GaussianBlur(
+        pictured(near, *(texture(each)[:480, :640] for each in (21, 22)), 9), (0, 0), 9.0
+    )
+    there = replace(
+        sighting(6, DEPTH), frame_id=9, pixel=pixel_of(DEPTH, near), world_from_base=near, way=None
+    )
+    views.keep(there, blurred, 0.0, is_seen=True, is_stop=True)
+    for _ in range(2):
+        checked = views.check()
+        assert checked.layer is not None
+        assert checked.sightings[-1] == replace(there, sigma=0.6)

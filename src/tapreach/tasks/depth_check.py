@@ -86,7 +86,7 @@ class DepthCheck:
             return view.sighting
         fit = self._fit(found, number, view)
         if fit is None:
-            return None
+            return _unconfirmed(view) if _is_followed_to(view, expected, covariance) else None
         fit = fit.fused_with(expected[:, 2], covariance)
         sigma = max(_LEAST_SIGMA, seen_from_elsewhere(fit.covariance, fit.warp, self._loose))
         pixel = Pixel(*map(float, fit.warp[:, 2]))
@@ -127,8 +127,20 @@ class DepthCheck:
 
 
 def _doubted(views: Sequence[KeptView]) -> tuple[Sighting, ...]:
-    first, *others = (view.sighting for view in views if view.is_seen)
-    return (first, *(replace(each, sigma=_UNCONFIRMED * each.sigma) for each in others))
+    first, *others = (view for view in views if view.is_seen)
+    return (first.sighting, *map(_unconfirmed, others))
+
+
+def _unconfirmed(view: KeptView) -> Sighting:
+    return replace(view.sighting, sigma=_UNCONFIRMED * view.sighting.sigma)
+
+
+def _is_followed_to(view: KeptView, expected: Warp, covariance: FloatArray) -> bool:
+    """Tell whether the place was followed to where it is expected, as well as that is known."""
+    if not view.is_seen:
+        return False
+    spread = covariance + view.sighting.sigma**2 * np.eye(2)
+    return _is_expected(view.sighting.pixel.to_array(), expected, spread)
 
 
 def _says_the_same_better(

@@ -74,4 +74,6 @@ def _with(view: KeptView, measured: Sighting | None) -> KeptView:
     """Return the view with its sighting as it was measured again, or as one in which nothing is seen."""
     if measured is None:
         return KeptView(view.sighting, view.pyramid, view.moved_px, is_seen=False)
+    if measured.pixel == view.sighting.pixel:  # what could not be confirmed may be so by the next check
+        return view
     return KeptView(measured, view.pyramid, view.moved_px)
