@@ -215,7 +215,7 @@ def test_watch_goes_on_from_where_the_check_found_the_place():
 
 
 def test_place_that_grew_past_comparing_stays_as_it_was_followed():
-    """Near views that the tapped patch cannot be fitted to any more count for less, and are not thrown away."""
+    """Near views that the tapped patch cannot be fitted to any more count for less; they do not go."""
     views = kept([DEPTH] * 6)
     near = PlanarPose(0.45, 0.0, -0.1)
     blurred = cv2.GaussianBlur(
