@@ -1,11 +1,13 @@
 """The first phases of a fetch: where the thing is and how large, and whether it can be fetched."""
 
+import math
 from functools import partial
 
 import numpy as np
 
-from tapreach.estimation.point_estimate import Status
+from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.pixel import Pixel
 from tapreach.tasks.aiming import aimed
 from tapreach.tasks.camera_delay import know_delay
 from tapreach.tasks.fetch.fetch_state import FetchPlan, Mode
@@ -17,6 +19,7 @@ from tapreach.tasks.fetch.seen_obstacles import seen_obstacles
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import NoSize
+from tapreach.tasks.fetch.too_high import refused_by_sight, refused_unlocated, tap_within_reach_up_to
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate import Locating
@@ -31,13 +34,18 @@ GRASPING_SECONDS = 20.0
 
 
 async def look(run: FetchRun) -> Ended:
-    """Locate the thing and measure it. Raises as LocateTask.run."""
+    """Locate the thing and measure it, unless it is too high by its line of sight alone. Raises as
+    LocateTask.run.
+    """
     tap = _tap(run)
     if tap is None:
         return Ended(Outcome.LOST, "it is not in the picture: drive so that it is, and tap it again")
     context, target_id = run.context, run.memory.target_id
     await end_following(run)
     tap = await aimed(context, tap)
+    within = await _within_reach_up_to(run, tap)
+    if high := refused_by_sight(within):
+        return Ended(Outcome.CANNOT, high)
     await know_delay(context)
     report = TargetReport(target_id, TargetSource.LOCATE, tap, context.description)
     follower = Follower(context, tap, key=target_id, uses_background=run.ways.use_background)
@@ -45,14 +53,30 @@ async def look(run: FetchRun) -> Ended:
     try:
         sentence = await run.locating.run()
     except TargetLost as lost:
-        return Ended(Outcome.LOST, str(lost))
+        return _not_located(Ended(Outcome.LOST, str(lost)), within, run.locating.estimate)
     estimate = run.locating.estimate
     if estimate is None or estimate.status is not Status.DETERMINED:
-        return Ended(Outcome.CANNOT, sentence)
+        return _not_located(Ended(Outcome.UNSURE, sentence), within, estimate)
     point = run.thing().point_in_world
     run.measured(run.locating.size or NoSize("it was not measured"), point)
     run.remember(point_in_world=point)
     return Ended(Outcome.DONE, sentence)
+
+
+async def _within_reach_up_to(run: FetchRun, tap: Tap) -> float:
+    """Return up to which distance what is tapped may be low enough [m]; what the claw has been around is."""
+    if run.memory.attempt > 1:
+        return math.inf
+    lowest = Pixel(tap.u, tap.v) if tap.box is None else tap.box.foot
+    return await run.context.compute.call(tap_within_reach_up_to, lowest, run.context.description)
+
+
+def _not_located(ended: Ended, within: float, estimate: PointEstimate | None) -> Ended:
+    """Refuse what is too high unless it is near; else it ends as it ended."""
+    interval = estimate.range_interval_95 if estimate is not None else None
+    is_bounded = estimate is not None and estimate.status is Status.RANGE_BOUNDED_BELOW
+    high = refused_unlocated(within, interval[0]) if interval and is_bounded else refused_unlocated(within)
+    return Ended(Outcome.CANNOT, high) if high else ended
 
 
 async def measure(run: FetchRun) -> None:

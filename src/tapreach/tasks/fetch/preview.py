@@ -19,6 +19,7 @@ from tapreach.tasks.fetch.body import Body
 from tapreach.tasks.fetch.obstacle import Obstacle, out_of
 from tapreach.tasks.fetch.reach import Judgement, Verdict, judge
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
+from tapreach.tasks.fetch.too_high import refused_by_place
 
 SUPPOSED_WIDTH, SUPPOSED_HEIGHT = 0.06, 0.10
 """What is approached to be measured is supposed to be so large [m]."""
@@ -92,7 +93,7 @@ def preview(
     if isinstance(thing.size, NoSize):
         found = _unmeasured(thing, thing.size, others, world_from_base, body, free_behind)
     else:
-        found = _measured(thing.size, others, world_from_base, body, free_behind, is_last_look)
+        found = _measured(thing, thing.size, others, world_from_base, body, free_behind, is_last_look)
     if is_last_look and found.verdict is Verdict.UNSURE:
         return replace(found, verdict=Verdict.NO)
     return found
@@ -119,7 +120,7 @@ def _unmeasured(
     free_behind: float,
 ) -> ReachPreview:
     size = supposed_size(thing, world_from_base)
-    judged = judge(size, body.claw)
+    judged = _too_high(thing, body) or judge(size, body.claw)
     if judged.verdict is Verdict.NO:
         return ReachPreview(Verdict.NO, judged.reason, judged.advice, size, True)
     way = plan_approach(size, others, world_from_base, body, free_behind)
@@ -130,6 +131,7 @@ def _unmeasured(
 
 
 def _measured(
+    thing: Thing,
     size: ThingSize,
     others: Sequence[Obstacle],
     world_from_base: PlanarPose,
@@ -140,6 +142,8 @@ def _measured(
     finite_array("axis_in_world", size.axis_in_world, (3,))
     require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
     judged = judge(size, body.claw, is_last_look)
+    if judged.verdict is not Verdict.YES:
+        judged = _too_high(thing, body) or judged
     if judged.grip is None and not judged.from_another_side:
         return ReachPreview(judged.verdict, judged.reason, judged.advice, size)
     way = plan_approach(size, others, world_from_base, body, free_behind, judged.from_another_side)
@@ -149,6 +153,13 @@ def _measured(
     judged = _placed(judged, size, world_from_base)
     reason = f"{way.in_words()}. {judged.reason}"
     return ReachPreview(judged.verdict, reason, judged.advice, size, False, way, grasp_in_world(way, body))
+
+
+def _too_high(thing: Thing, body: Body) -> Judgement | None:
+    """Return the refusal of what was tapped too high up and does not fit the claw as it was measured: the
+    outline of what stands on something is often that of both.
+    """
+    return refused_by_place(thing.point_in_world, thing.point_cov_in_world, body.claw)
 
 
 def _without_way(way: NoWay, judged: Judgement, size: ThingSize) -> ReachPreview:

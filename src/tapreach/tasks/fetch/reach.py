@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 
 from tapreach.tasks.fetch.claw_room import Claw
 from tapreach.tasks.fetch.thing import ThingSize
@@ -74,6 +75,8 @@ def judge(size: ThingSize, claw: Claw, is_last_look: bool = False) -> Judgement:
     refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, is_last_look)
     if refused is not None:
         return refused
+    if grip is None and size.width > claw.opens_to:
+        return _no(_wider_by(size, claw), "")
     if grip is None:
         return _no(f"the claw does not get around it at any height from {_mm(claw.lowest)} up", "")
     doubt = _doubtful_stand(size, grip) or _doubtful_width(size, claw, grip, is_last_look)
@@ -91,6 +94,15 @@ def grip_for(size: ThingSize, claw: Claw, rotation: float = 0.0) -> Grip | None:
         if grip is not None:
             return grip
     return None
+
+
+@lru_cache(maxsize=64)
+def highest_grip(half_depth: float, claw: Claw) -> float | None:
+    """Return the greatest height at which something so deep can be gripped and lifted [m]; None for none."""
+    steps = math.ceil(2.0 * claw.longest / _HEIGHT_STEP)
+    downward = (claw.lowest + i * _HEIGHT_STEP for i in range(steps, -1, -1))
+    can = (h for h in downward if _grip_at(h, half_depth, claw.opens_to, claw, 0.0) is not None)
+    return next(can, None)
 
 
 def in_words(size: ThingSize, grip: Grip) -> str:
@@ -112,19 +124,11 @@ def _grip_at(height: float, half_depth: float, opening: float, claw: Claw, rotat
     return Grip(height, opening, ahead, spare, ahead - to_front, half_depth)
 
 
-def _highest_grip(half_depth: float, claw: Claw) -> float | None:
-    """Return the greatest height at which something so deep can be gripped and lifted [m]; None for none."""
-    steps = math.ceil(2.0 * claw.longest / _HEIGHT_STEP)
-    downward = (claw.lowest + i * _HEIGHT_STEP for i in range(steps, -1, -1))
-    can = (h for h in downward if _grip_at(h, half_depth, claw.opens_to, claw, 0.0) is not None)
-    return next(can, None)
-
-
 def _too_high(size: ThingSize, claw: Claw) -> Judgement | None:
     if size.foot <= OFF_FLOOR:
         return None
     half_depth = min(size.width, claw.opens_to) / 2.0
-    highest = _highest_grip(half_depth, claw)
+    highest = highest_grip(half_depth, claw)
     if highest is None or size.foot + BITE <= highest:
         return None
     begins = f"it begins {_mm(size.foot)} above the floor"
@@ -150,19 +154,23 @@ def _too_flat(size: ThingSize, claw: Claw) -> Judgement | None:
 def _too_wide(size: ThingSize, claw: Claw, is_last_look: bool) -> Judgement | None:
     opens = claw.opens_to
     least = size.width if is_last_look else size.width - SURE * size.width_sd
-    too_much = f"{_mm(size.width - opens)} too wide for the claw"
     if least > OVER_CORNER * (opens - CLAW_SPARE) or (is_last_look and size.width > opens):
-        return _no(f"{too_much}: it is {_mm(size.width)} wide, the claw opens to {_mm(opens)}", "")
+        return _no(_wider_by(size, claw), "")
     if least > opens:
         side = "look at it from another side: a box is narrower there than over its corner"
         return Judgement(
             Verdict.UNSURE,
-            f"{too_much} as seen from here",
+            f"{_mm(size.width - opens)} too wide for the claw as seen from here",
             side,
             grip_for(size, claw),
             from_another_side=True,
         )
     return None
+
+
+def _wider_by(size: ThingSize, claw: Claw) -> str:
+    too_much = f"{_mm(size.width - claw.opens_to)} too wide for the claw"
+    return f"{too_much}: it is {_mm(size.width)} wide, the claw opens to {_mm(claw.opens_to)}"
 
 
 def _doubtful_stand(size: ThingSize, grip: Grip) -> Judgement | None:

@@ -70,7 +70,12 @@ STATES: Mapping[Phase, State] = {
     Phase.LOOK: State(
         "finds out where the thing is and how large",
         0.0,
-        {Outcome.DONE: Phase.PREVIEW, Outcome.LOST: Phase.FAILED, Outcome.CANNOT: Phase.FAILED},
+        {
+            Outcome.DONE: Phase.PREVIEW,
+            Outcome.LOST: Phase.FAILED,
+            Outcome.UNSURE: Phase.FAILED,
+            Outcome.CANNOT: Phase.REFUSED,
+        },
         _STANDS,
         Phase.LOOK,
     ),
