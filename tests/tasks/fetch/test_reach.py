@@ -1,5 +1,6 @@
 """Whether a thing can be gripped: margins by what is not known, and refusals by name."""
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,6 +16,7 @@ CLAW = BODY.claw
     ("size", "verdict", "reason", "advice"),
     [
         ({"width": 0.101, "width_sd": 0.001}, "no", "28 mm too wide for the claw: it is 101 mm wide", ""),
+        ({"width": 0.25, "width_sd": 0.12}, "no", "177 mm too wide for the claw: it is 250 mm wide", ""),
         ({"width": 0.085}, "unsure", "12 mm too wide for the claw as seen from here", "from another side"),
         (
             {"width": 0.06, "width_sd": 0.007},
@@ -85,6 +87,12 @@ def test_room_ends_where_the_arm_ends():
     assert CLAW.fits(room.farthest, 0.05, 0.06, 0.0)
     assert not CLAW.fits(room.nearest - 0.001, 0.05, 0.06, 0.0)
     assert not CLAW.fits(room.farthest + 0.001, 0.05, 0.06, 0.0)
+
+
+def test_room_has_no_holes():
+    room = CLAW.room(0.1, 0.055)
+    assert room is not None
+    assert all(CLAW.fits(float(way), 0.1, 0.055, 0.0) for way in np.arange(room.nearest, room.farthest, 1e-3))
 
 
 def test_no_room_above_what_the_arm_reaches():

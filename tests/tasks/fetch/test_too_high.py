@@ -1,6 +1,8 @@
 """What is refused as too high is too high, and what can be reached is not refused for it."""
 
+import asyncio
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,20 +10,31 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import binom
 
 from tapreach.geometry.pixel import Pixel
+from tapreach.geometry.pixel_box import PixelBox
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.ray import Ray
+from tapreach.robot.config import RobotDescription
 from tapreach.tasks.candidate_moves import NEAREST
+from tapreach.tasks.fetch.arm_watch import ArmWatch
+from tapreach.tasks.fetch.fetch_state import Mode
+from tapreach.tasks.fetch.looking import _not_located, _within_reach_up_to, look
+from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.preview import preview
 from tapreach.tasks.fetch.reach import Verdict, highest_grip
+from tapreach.tasks.fetch.run import Ended, FetchRun
+from tapreach.tasks.fetch.states import Outcome, Phase, next_phase
 from tapreach.tasks.fetch.thing import NoSize, Thing
 from tapreach.tasks.fetch.too_high import (
+    WORTH_SAYING,
     refused_by_place,
     refused_by_sight,
     refused_unlocated,
     tap_within_reach_up_to,
     within_reach_up_to,
 )
+from tapreach.tasks.task import Tap
 from tasks.fetch.worlds import BODY, ROBOT, size_at
+from tasks.rig import bare_context
 
 HIGHEST = highest_grip(0.0, BODY.claw)
 assert HIGHEST is not None
@@ -90,6 +103,40 @@ def test_place_is_too_high_only_with_two_sigmas_to_spare() -> None:
     refused = refused_by_place(at[1], cov, BODY.claw)
     assert refused is not None and refused.verdict is Verdict.NO
     assert "too high: the claw reaches 281 mm, it was tapped 331 mm above the floor" in refused.reason
+
+
+def with_camera(up: float, pitch_deg: float) -> RobotDescription:
+    mount = ROBOT.camera.mount.model_copy(update={"up": up, "pitch_deg": pitch_deg})
+    return ROBOT.model_copy(update={"camera": ROBOT.camera.model_copy(update={"mount": mount})})
+
+
+def run_of(description: RobotDescription, tap: Tap) -> FetchRun:
+    """A fetch without a robot: whatever would move fails."""
+    context = replace(bare_context(), description=description)
+    return FetchRun(context, FetchMemory(tap, 1, Mode.GO), [], ArmWatch.__new__(ArmWatch))
+
+
+def test_look_refuses_before_anything_moves() -> None:
+    run = run_of(with_camera(up=0.4, pitch_deg=-20.0), Tap(1, 320.0, 100.0))
+    ended = asyncio.run(look(run))
+    assert ended.outcome is Outcome.CANNOT
+    assert next_phase(Phase.LOOK, ended.outcome, 1) is Phase.REFUSED
+    assert "too high" in ended.why
+
+
+def test_box_that_reaches_down_to_the_claw_is_not_refused_for_its_upper_edge() -> None:
+    description = with_camera(up=0.4, pitch_deg=0.0)
+    box = PixelBox(300.0, 40.0, 340.0, 470.0)
+    upper, whole = (run_of(description, Tap(1, 320.0, 60.0, each)) for each in (None, box))
+    assert asyncio.run(_within_reach_up_to(upper, upper.memory.tap)) == 0.0
+    assert math.isinf(asyncio.run(_within_reach_up_to(whole, whole.memory.tap)))
+
+
+def test_look_in_vain_is_refused_only_where_the_line_of_sight_rises() -> None:
+    lost = Ended(Outcome.LOST, "it has left the picture")
+    assert _not_located(lost, 0.7, None).outcome is Outcome.CANNOT
+    assert _not_located(lost, math.inf, None) is lost
+    assert _not_located(lost, WORTH_SAYING + 0.1, None) is lost
 
 
 @pytest.mark.parametrize("size", [NoSize("nothing bounds it"), size_at(1.0, 0.0, width=0.24, height=0.5)])

@@ -52,7 +52,8 @@ def test_leg_is_driven_but_followed_only_where_it_is_estimated_on(renews) -> Non
     context = replace(bare_context(), pilot=wheels)
     context.poses.add(1, PlanarPose())
     memory = FetchMemory(Tap(1, 1.0, 1.0), 1, Mode.GO)
-    run = FetchRun(context, memory, [], ArmWatch.__new__(ArmWatch), Ways(renews_on_way=renews), following)
+    ways = Ways(renews_on_way=renews)
+    run = FetchRun(context, memory, [], ArmWatch.__new__(ArmWatch), ways=ways, locating=following)
     asyncio.run(drive(run, LEG))
     assert wheels.moves == [LEG.step]
     assert following.count == int(renews)
