@@ -20,6 +20,7 @@ from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.fixed_move import fixed_step
 from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.free_way import way_behind
+from tapreach.tasks.known_place import KnownPlace
 from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
 from tapreach.tasks.locate_watch import BLOCKED, SLIPPING, MoveWatch, is_accurate
 from tapreach.tasks.move_choice import Choice, Room, planned_move
@@ -91,6 +92,7 @@ class Locating:
         self._report = report
         self._accuracy = accuracy
         self._is_fixed = is_fixed
+        self._known: KnownPlace | None = None
         self._stops: list[Sighting] = []
         self._estimate: LocatedPoint | None = None
         self._driven = 0.0
@@ -118,10 +120,21 @@ class Locating:
         self._stops.append(await self._follower.open())
         self._show()
         await self._follower.catch_up()
+        await self._renew_if_known()
         end = await (self._make_fixed() if self._is_fixed else self._refine())
         await self._renew(with_advice=end not in (End.REACHED, End.LOST))
         await self._measure()
         return self._conclusion(end)
+
+    async def recall(self, known: KnownPlace) -> None:
+        """Make use of where the tapped place was by an earlier look, from now on."""
+        self._known = known
+        if self._stops:
+            await self._renew_if_known()
+
+    async def _renew_if_known(self) -> None:
+        if self._known is not None:
+            await self._renew(with_advice=False)
 
     async def drive(self, motion: Coroutine[Any, Any, object]) -> None:
         """Go on following and estimating while `motion` is carried out, and look once it has ended.
@@ -139,7 +152,7 @@ class Locating:
         if is_behind and now_ns - self._renewed_ns < _RENEW_AT_LEAST_NS:
             return
         self._renewed_ns = now_ns
-        seen = Seen(self._sightings(), self._follower.last, self._follower.loss, self._here)
+        seen = Seen(self._sightings(), self._follower.last, self._follower.loss, self._here, self._known)
         picture = await self._context.compute.call(online_picture, seen, self._report)
         if picture.estimate is not None:
             self._estimate = picture.estimate
@@ -149,6 +162,8 @@ class Locating:
 
     async def _refine(self) -> End:
         """Move and look until there is a reason to end it."""
+        if is_accurate(self._estimate, self._accuracy):
+            return End.REACHED
         for move in range(MOST_MOVES):
             choice = await self._choose()
             if choice is None:
@@ -253,9 +268,9 @@ class Locating:
     async def _renew(self, with_advice: bool) -> None:
         self._renewed_ns = self._context.clock.now_ns()
         sightings = self._sightings()
-        if len(sightings) > 1:
+        if len(sightings) > 1 or self._known is not None:
             self._estimate = await self._context.compute.call(
-                estimate, sightings, self._context.description, with_advice
+                estimate, sightings, self._context.description, with_advice, False, self._known
             )
             if self._is_determined:
                 self._follower.point_in_world = self._estimate.point_in_world

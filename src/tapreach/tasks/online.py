@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.estimating import LocatedPoint, estimate
+from tapreach.tasks.known_place import KnownPlace
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.target import Target
 from tapreach.tasks.target_report import TargetReport
@@ -23,13 +24,14 @@ class Seen:
     """What there is to show in a frame.
 
     sightings: those that count, in the order of time. newest: the last one. loss: why the place is not seen
-    in the newest frame, '' while it is. here: the base by the wheels.
+    in the newest frame, '' while it is. here: the base by the wheels. known: where it was by an earlier look.
     """
 
     sightings: Sequence[Sighting]
     newest: Sighting
     loss: str
     here: PlanarPose
+    known: KnownPlace | None = None
 
 
 def online_picture(seen: Seen, report: TargetReport) -> OnlinePicture:
@@ -42,7 +44,7 @@ def online_picture(seen: Seen, report: TargetReport) -> OnlinePicture:
     if is_unconfirmed:
         sightings.append(newest)
     found = None
-    if len(sightings) > 1:
-        found = estimate(sightings, report.description, False, is_unconfirmed)
+    if len(sightings) > 1 or seen.known is not None:
+        found = estimate(sightings, report.description, False, is_unconfirmed, seen.known)
     target = report.target(sightings, found, not seen.loss, seen.loss, seen.here)
     return OnlinePicture(found, target)

@@ -11,6 +11,7 @@ from tapreach.tasks.fetch.approach import NEAR_SHARE, Approach
 from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold, lead, lead_straight, lead_to
 from tapreach.tasks.fetch.arm_workspace import Unreachable
 from tapreach.tasks.fetch.grip_motion import LIFT_SPEED, closed, lift_path
+from tapreach.tasks.fetch.looking import end_following
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import ThingSize
@@ -80,14 +81,23 @@ async def back_off(run: FetchRun) -> Ended:
     except ArmBlocked as blocked:
         return Ended(Outcome.CANNOT, f"the arm does not get free: {blocked}")
     if run.locating is None:
+        _let_be_moved(run)
         return Ended(Outcome.DONE, "looks for it where it was")
     sighting = await run.locating.follower.look()
-    if sighting is None:
+    tap = None if sighting is None else Tap(sighting.frame_id, sighting.pixel.u, sighting.pixel.v)
+    if tap is None and run.memory.known is None:
         loss = run.locating.follower.loss
         return Ended(Outcome.LOST, f"it is not seen any more ({loss}): it may have moved. Tap it again")
-    tap = Tap(sighting.frame_id, sighting.pixel.u, sighting.pixel.v)
-    run.remember(tap=tap, point_in_world=None)
-    return Ended(Outcome.DONE, "it is seen again")
+    await end_following(run)
+    _let_be_moved(run)
+    run.remember(seen_again=tap)
+    return Ended(Outcome.DONE, "it is seen again" if tap is not None else "looks for it where it was")
+
+
+def _let_be_moved(run: FetchRun) -> None:
+    """Know the thing's place only as well as after a grip that may have pushed it."""
+    if run.memory.known is not None:
+        run.remember(known=run.memory.known.pushed())
 
 
 async def _come_right(run: FetchRun, way: Approach) -> ClawWay:

@@ -11,7 +11,13 @@ from tapreach.geometry.pixel import Pixel
 from tapreach.tasks.aiming import aimed
 from tapreach.tasks.camera_delay import know_delay
 from tapreach.tasks.fetch.fetch_state import FetchPlan, Mode
-from tapreach.tasks.fetch.known_target import pixel_of
+from tapreach.tasks.fetch.looking_again import (
+    is_where_it_was,
+    keep_what_is_known,
+    locate_again,
+    still_followed,
+    tap_again,
+)
 from tapreach.tasks.fetch.preview import ReachPreview, preview
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -37,10 +43,13 @@ async def look(run: FetchRun) -> Ended:
     """Locate the thing and measure it, unless it is too high by its line of sight alone. Raises as
     LocateTask.run.
     """
-    tap = _tap(run)
+    tap = await _tap(run)
     if tap is None:
-        return Ended(Outcome.LOST, "it is not in the picture: drive so that it is, and tap it again")
+        return Ended(
+            Outcome.LOST, "it is not seen where it should be: drive so that it is in the picture, and tap it"
+        )
     context, target_id = run.context, run.memory.target_id
+    run.recall_size()
     await end_following(run)
     tap = await aimed(context, tap)
     within = await _within_reach_up_to(run, tap)
@@ -51,15 +60,17 @@ async def look(run: FetchRun) -> Ended:
     follower = Follower(context, tap, key=target_id, uses_background=run.ways.use_background)
     run.locating = Locating(context, follower, report, ACCURACY, run.ways.fixed_move)
     try:
-        sentence = await run.locating.run()
+        sentence = await locate_again(run, run.locating)
     except TargetLost as lost:
         return _not_located(Ended(Outcome.LOST, str(lost)), within, run.locating.estimate)
     estimate = run.locating.estimate
     if estimate is None or estimate.status is not Status.DETERMINED:
         return _not_located(Ended(Outcome.UNSURE, sentence), within, estimate)
+    if not is_where_it_was(run):
+        run.forget()
     point = run.thing().point_in_world
     run.measured(run.locating.size or NoSize("it was not measured"), point)
-    run.remember(point_in_world=point)
+    keep_what_is_known(run)
     return Ended(Outcome.DONE, sentence)
 
 
@@ -85,7 +96,7 @@ async def measure(run: FetchRun) -> None:
     point = run.thing().point_in_world
     if locating is not None and locating.estimate is not None:
         run.measured(await size_of(run.context, locating.estimate, run.memory.tap.box), point)
-    run.remember(point_in_world=point)
+    keep_what_is_known(run)
 
 
 async def judge_reach(run: FetchRun) -> Ended:
@@ -135,10 +146,12 @@ async def end_following(run: FetchRun) -> None:
         run.locating = None
 
 
-def _tap(run: FetchRun) -> Tap | None:
-    """Return the tap that began it; later one on the same place in the newest picture, None out of sight."""
-    memory, frame = run.memory, run.context.frames.newest
-    if memory.point_in_world is None:
+async def _tap(run: FetchRun) -> Tap | None:
+    """Return the tap that began it; later one on the thing where it is seen by now, None where it is not."""
+    memory = run.memory
+    if memory.known is None:
         return memory.tap
-    pixel = pixel_of(run.context, memory.point_in_world)
-    return None if pixel is None or frame is None else Tap(frame.frame_id, pixel.u, pixel.v)
+    tap = still_followed(run) or await tap_again(run) or memory.seen_again
+    if tap is not None:
+        run.remember(tap=tap, seen_again=None)
+    return tap

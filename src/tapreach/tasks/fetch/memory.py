@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.messages import ArmPose
 from tapreach.tasks.fetch.arm_zero import ArmZero
 from tapreach.tasks.fetch.fetch_state import Mode
+from tapreach.tasks.fetch.known_thing import KnownThing
 from tapreach.tasks.fetch.states import FIRST, Phase
 from tapreach.tasks.task import Tap
 
@@ -16,9 +16,10 @@ class FetchMemory:
     """Replaced as fetching goes on; the world is that of the present odometry.
 
     tap: on the frame that names the thing. attempt, looks: of gripping and of locating, counted from 1.
-    called_from: where the base stood when it was called. point_in_world (3,) [m]: the tapped place, None
-    before it is located. gripped_at: the arm's pose when the claw closed, None while nothing has been
-    gripped. zero: the arm as it was seen. way: where the base has been since.
+    called_from: where the base stood when it was called. known: what the newest look has told, None before
+    the first. seen_again: where the thing was seen after a miss, None where it was not. gripped_at: the arm's
+    pose when the claw closed, None while nothing has been gripped. zero: the arm as it was seen. way: where
+    the base has been since.
     """
 
     tap: Tap
@@ -28,7 +29,8 @@ class FetchMemory:
     attempt: int = 1
     looks: int = 1
     called_from: PlanarPose | None = None
-    point_in_world: FloatArray | None = None
+    known: KnownThing | None = None
+    seen_again: Tap | None = None
     gripped_at: ArmPose | None = None
     zero: ArmZero | None = None
     way: tuple[PlanarPose, ...] = ()

@@ -1,5 +1,6 @@
 """What the phases of one fetch share: the robot's context, and what is known by now."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -11,6 +12,7 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.fetch.arm_watch import ArmWatch
 from tapreach.tasks.fetch.arm_workspace import ArmWorkspace
 from tapreach.tasks.fetch.claw_room import Claw
+from tapreach.tasks.fetch.kept_size import with_earlier
 from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.preview import ReachPreview
@@ -38,7 +40,8 @@ class NotKnown(TapreachError):
 class FetchRun:
     """One fetch on its way. Everything in the world of the present odometry.
 
-    size: as last measured, its axis given by its offset (3,) [m] from the tapped place.
+    size: as last measured, its axis given by its offset (3,) [m] from the tapped place. earlier_size: as the
+    looks before this one told it.
     """
 
     context: TaskContext
@@ -49,7 +52,23 @@ class FetchRun:
     locating: Locating | None = None
     size: ThingSize | NoSize = field(default_factory=lambda: NoSize("it has not been measured yet"))
     axis_offset: FloatArray | None = None
+    earlier_size: ThingSize | None = None
     preview: ReachPreview | None = None
+
+    def __post_init__(self) -> None:
+        self.recall_size()
+
+    def recall_size(self) -> None:
+        """Go on with the size that the looks so far have told, if any."""
+        known = self.memory.known
+        if known is not None and known.size is not None:
+            self.size = self.earlier_size = known.size
+            self.axis_offset = known.axis_offset
+
+    def forget(self) -> None:
+        """Know nothing of the thing any more: what is looked at now is another one."""
+        self.remember(known=None)
+        self.size, self.axis_offset, self.earlier_size = NoSize("it has not been measured yet"), None, None
 
     @property
     def here(self) -> PlanarPose:
@@ -100,9 +119,17 @@ class FetchRun:
         not replace one that is known.
         """
         if isinstance(size, ThingSize):
-            self.size, self.axis_offset = size, np.asarray(size.axis_in_world - point_in_world)
+            self.axis_offset = np.asarray(size.axis_in_world - point_in_world)
+            self.size = with_earlier(size, self.earlier_size, self._sight_along(size))
         elif isinstance(self.size, NoSize):
             self.size = size
+
+    def sized_along(self, size: ThingSize) -> ThingSize:
+        """Return a size with the direction of the sight across which it was measured, for later looks."""
+        return size if size.seen_along is not None else replace(size, seen_along=self._sight_along(size))
+
+    def _sight_along(self, size: ThingSize) -> float:
+        return math.atan2(size.axis_in_world[1] - self.here.y, size.axis_in_world[0] - self.here.x)
 
     def remember(self, **changes: object) -> None:
         """Change what a stopped fetch goes on from."""

@@ -11,6 +11,7 @@ from tapreach.tasks.fetch.arm_zero import ArmZero
 from tapreach.tasks.fetch.fetch_state import FetchState, Mode, Verb
 from tapreach.tasks.fetch.gripping import back_off, grip, lift, reach
 from tapreach.tasks.fetch.looking import end_following, judge_reach, look, plan_of
+from tapreach.tasks.fetch.looking_again import keep_what_is_known
 from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -70,6 +71,8 @@ class FetchTask:
         try:
             return await self._carry_out(run)
         finally:
+            if run.memory.phase in (Phase.LOOK, Phase.APPROACH, Phase.LAST_LOOK):
+                keep_what_is_known(run)
             self.memory = run.memory
             run.arm_watch.end()
             await end_following(run)

@@ -1,0 +1,165 @@
+"""Looking for the thing again: after a miss, after a stop, or from nearer; with what the earlier look told.
+
+Where it should be by the way since is only a start: it may have been pushed. It is found there by how it
+looked in the last picture that showed it.
+"""
+
+import math
+from contextlib import suppress
+
+import numpy as np
+
+from tapreach.errors import FrameError
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold
+from tapreach.tasks.fetch.known_thing import Appearance, KnownThing
+from tapreach.tasks.fetch.run import FetchRun
+from tapreach.tasks.fetch.thing import ThingSize
+from tapreach.tasks.frame_pose import pose_at
+from tapreach.tasks.known_place import KnownPlace
+from tapreach.tasks.locate import Locating
+from tapreach.tasks.optics import optics_of
+from tapreach.tasks.task import Tap
+from tapreach.vision.image_io import BrokenPicture, decode_gray
+from tapreach.vision.seen_again import Expected, SeenAgain, seen_again
+
+_SAME_SIGMAS = 4.0
+"""What is located farther from where it was known to be is another thing."""
+_AT_REST_PX = 5.0
+"""A camera that rocks, and a picture's own errors, one sigma [px]."""
+_USUAL_HALF = 0.03
+"""Half of how large a thing is that was never measured [m]."""
+_LEAST_STEP, _MOST_STEP = 0.06, 0.2
+_STEP_M = 0.002
+
+
+def keep_what_is_known(run: FetchRun) -> None:
+    """Remember place, size and looks of the thing as they are known by now; what they were, before that."""
+    estimate = run.locating.estimate if run.locating is not None else None
+    if estimate is None or estimate.point_in_world is None:
+        return
+    thing, here = run.thing(), run.here
+    size = run.sized_along(thing.size) if isinstance(thing.size, ThingSize) else None
+    before = run.memory.known
+    seen = _appearance(run, estimate) or (before.appearance if before is not None else None)
+    place = KnownPlace(thing.point_in_world, thing.point_cov_in_world, here)
+    run.remember(known=KnownThing(place, size, run.axis_offset, seen))
+
+
+async def locate_again(run: FetchRun, locating: Locating) -> str:
+    """Locate with what the looks before have told, and return the closing sentence. Raises as LocateTask.run.
+
+    A thing that could not be measured is looked at from as many places as if nothing had been known.
+    """
+    known = run.memory.known
+    if known is not None and known.size is not None:
+        await locating.recall(known.place)
+    sentence = await locating.run()
+    if known is not None and known.size is None:
+        await locating.recall(known.place)
+    return sentence
+
+
+def still_followed(run: FetchRun) -> Tap | None:
+    """Return a tap on the place that is being followed; None where nothing is, or it is not seen."""
+    follower = run.locating.follower if run.locating is not None else None
+    if follower is None or follower.loss or not follower.sightings:
+        return None
+    last = follower.last
+    return Tap(last.frame_id, last.pixel.u, last.pixel.v)
+
+
+async def tap_again(run: FetchRun) -> Tap | None:
+    """Return a tap on the thing where it is seen in a new picture; None where it is not.
+
+    Raises LinkLost when the camera is silent.
+    """
+    context, known = run.context, run.memory.known
+    if known is None or known.appearance is None:
+        return None
+    await _out_of_the_picture(run)
+    newest = context.frames.newest
+    frame = await context.next_frame(newest.frame_id if newest is not None else 0)
+    here = await pose_at(context, frame.captured_ns)
+    there = expected(known, here, context.description)
+    if there is None:
+        return None
+    half = _half_px(known, known.appearance, context.description)
+    found = await context.compute.call(_find, known.appearance, half, frame.jpeg, there)
+    if found is None:
+        return None
+    u, v = map(float, found.pixel)
+    return Tap(frame.frame_id, u, v)
+
+
+async def _out_of_the_picture(run: FetchRun) -> None:
+    """Fold the arm, which a stop may have left before the camera; what is still seen past it may do."""
+    with suppress(ArmBlocked):
+        await fold(run)
+
+
+def is_where_it_was(run: FetchRun) -> bool:
+    """Tell whether the thing just located can be the one that was known before."""
+    known, found = run.memory.known, run.thing()
+    if known is None:
+        return True
+    there = known.place.seen_from(run.here, run.context.description)
+    off = found.point_in_world - there.point_in_world
+    off_sigmas = off @ np.linalg.solve(found.point_cov_in_world + there.cov_in_world, off)
+    return bool(off_sigmas <= _SAME_SIGMAS**2)
+
+
+def expected(known: KnownThing, here: PlanarPose, description: RobotDescription) -> Expected | None:
+    """Return where the thing should be in a picture taken at `here`; None where it would not be in it."""
+    assert known.appearance is not None
+    place = known.place.seen_from(here, description)
+    camera, mount, _ = optics_of(description.camera)
+    camera_from_world = (here.to_rigid() * mount).inv()
+    beside = [place.point_in_world, *(place.point_in_world + _STEP_M * np.eye(3))]
+    points = camera_from_world.apply(np.array(beside))
+    projection = camera.project(points)
+    if not np.all(projection.is_valid) or not projection.is_inside[0]:
+        return None
+    by_point = (projection.pixels[1:] - projection.pixels[0]).T / _STEP_M
+    distance = float(np.linalg.norm(points[0]))
+    nearer = known.appearance.distance / distance
+    moved = camera.fx * math.radians(description.camera.mount.angle_sigma_deg) * abs(nearer - 1.0)
+    at_rest = (_AT_REST_PX**2 + moved**2) * np.eye(2)
+    covariance = by_point @ place.cov_in_world @ by_point.T + at_rest
+    distance_sd = math.sqrt(float(np.linalg.eigvalsh(place.cov_in_world)[-1]))
+    return Expected(projection.pixels[0], covariance, _scales(nearer, distance_sd / distance))
+
+
+def _scales(likeliest: float, relative_sd: float) -> tuple[float, ...]:
+    step = 1.0 + min(max(relative_sd, _LEAST_STEP), _MOST_STEP)
+    return tuple(likeliest * step**power for power in (0, -1, 1, -2, 2))
+
+
+def _half_px(known: KnownThing, seen: Appearance, description: RobotDescription) -> float:
+    half = _USUAL_HALF if known.size is None else max(known.size.width, known.size.height) / 2.0
+    return description.camera.fx * half / seen.distance
+
+
+def _find(seen: Appearance, half_px: float, jpeg: bytes, there: Expected) -> SeenAgain | None:
+    earlier, picture = decode_gray(seen.jpeg), decode_gray(jpeg)
+    if isinstance(earlier, BrokenPicture) or isinstance(picture, BrokenPicture):
+        return None
+    return seen_again(earlier, (seen.pixel.u, seen.pixel.v), half_px, picture, there)
+
+
+def _appearance(run: FetchRun, estimate: LocatedPoint) -> Appearance | None:
+    """Return the newest picture that shows it and is still kept."""
+    point, description = estimate.point_in_world, run.context.description
+    fitting = [each for i, each in enumerate(estimate.sightings) if i not in estimate.rejected_views]
+    if point is None:
+        return None
+    for sighting in reversed(fitting):
+        try:
+            jpeg = run.context.frames.get(sighting.frame_id).jpeg
+        except FrameError:
+            continue
+        camera = (sighting.world_from_base.to_rigid() * optics_of(description.camera)[1]).translation
+        return Appearance(jpeg, sighting.pixel, float(np.linalg.norm(point - camera)))
+    return None

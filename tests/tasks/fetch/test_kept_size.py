@@ -1,0 +1,42 @@
+"""A size that was measured once is kept, and made surer by a second one only as far as both say the same."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tapreach.tasks.fetch.kept_size import with_earlier
+from tasks.fetch.worlds import size_at
+
+widths = st.floats(0.03, 0.07)
+sds = st.floats(0.001, 0.01)
+
+
+@given(widths, sds, sds, st.floats(-1.0, 1.0), st.floats(-0.2, 0.2))
+def test_mean_of_two_sizes_lies_between_them_and_is_no_surer_than_the_better(
+    width: float, sd: float, earlier_sd: float, off: float, aside: float
+) -> None:
+    new = size_at(0.5, 0.0, width, width_sd=sd)
+    earlier = replace(size_at(0.5, 0.0, width + off * earlier_sd, width_sd=earlier_sd), seen_along=aside)
+    both = with_earlier(new, earlier, 0.0)
+    low, high = sorted((new.width, earlier.width))
+    assert low - 1e-12 <= both.width <= high + 1e-12
+    assert min(sd, earlier_sd) - 1e-12 <= both.width_sd <= max(sd, earlier_sd) + 1e-12
+    by_new, by_earlier = abs(both.width - new.width), abs(both.width - earlier.width)
+    assert by_new <= by_earlier + 1e-12 or earlier_sd < sd
+
+
+def test_width_from_another_side_is_another_width_and_the_height_is_the_same() -> None:
+    new = size_at(0.5, 0.0, 0.05, 0.100, width_sd=0.003, height_sd=0.004)
+    earlier = replace(size_at(0.5, 0.0, 0.053, 0.102, height_sd=0.004), seen_along=math.radians(40.0))
+    both = with_earlier(new, earlier, 0.0)
+    assert (both.width, both.width_sd) == (new.width, new.width_sd)
+    assert both.height == pytest.approx(0.101)
+
+
+def test_size_of_something_else_does_not_count() -> None:
+    new, other = size_at(0.5, 0.0, 0.04), replace(size_at(0.5, 0.0, 0.06), seen_along=0.0)
+    assert with_earlier(new, other, 0.0) is new
+    assert with_earlier(new, None, 0.0) is new

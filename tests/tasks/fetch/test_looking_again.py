@@ -1,0 +1,133 @@
+"""Looking for the thing again: where it should be in the picture, what of it is kept, and what forgotten."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tapreach.geometry.pixel import Pixel
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
+from tapreach.tasks.estimating import LocatedPoint, estimate
+from tapreach.tasks.fetch.fetch_state import Mode
+from tapreach.tasks.fetch.gripping import _let_be_moved
+from tapreach.tasks.fetch.known_thing import PUSHED_SD, Appearance, KnownThing
+from tapreach.tasks.fetch.looking_again import expected, is_where_it_was, keep_what_is_known
+from tapreach.tasks.fetch.memory import FetchMemory
+from tapreach.tasks.fetch.run import FetchRun
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tapreach.tasks.known_place import KnownPlace
+from tapreach.tasks.optics import optics_of, points_in_camera
+from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.task import Tap
+from tasks.fetch.worlds import ROBOT, size_at
+from tasks.rig import bare_context
+
+THING = np.array([0.6, 0.03, 0.05])
+HERE = PlanarPose(0.05, 0.0, 0.0)
+SEEN = Appearance(b"", Pixel(320.0, 240.0), 0.5)
+
+
+class Located:
+    """What a locating that has ended is to a fetch."""
+
+    def __init__(self, found: LocatedPoint) -> None:
+        self.estimate = found
+
+
+def pixel_of(thing: np.ndarray, here: PlanarPose) -> np.ndarray:
+    in_camera = points_in_camera(thing[None], here, ROBOT.camera)
+    return np.asarray(optics_of(ROBOT.camera)[0].project(in_camera).pixels[0])
+
+
+def known(sd: float = 0.01) -> KnownThing:
+    size = replace(size_at(0.6, 0.03), seen_along=0.0)
+    place = KnownPlace(THING, sd**2 * np.eye(3), HERE)
+    return KnownThing(place, size, np.array([0.02, 0.0, 0.0]), SEEN)
+
+
+def run_with(what: KnownThing | None, thing: np.ndarray = THING) -> FetchRun:
+    """A fetch whose robot stands at HERE, having located `thing`."""
+    context = bare_context()
+    context.poses.add(1, HERE)
+    run = FetchRun(context, FetchMemory(Tap(1, 1.0, 1.0), 1, Mode.GO, known=what), (), None)  # type: ignore[arg-type]
+    poses = [HERE.after(PlanarStep(0.0, -back)) for back in (0.3, 0.15, 0.0)]
+    views = [
+        Sighting(i, i, Pixel(*map(float, pixel_of(thing, pose))), 0.4, 1.0, pose)
+        for i, pose in enumerate(poses)
+    ]
+    run.locating = Located(estimate(views, ROBOT, False))  # type: ignore[assignment]
+    return run
+
+
+def spread(what: KnownThing, here: PlanarPose = HERE) -> float:
+    there = expected(what, here, ROBOT)
+    assert there is not None
+    return math.sqrt(float(np.linalg.eigvalsh(there.covariance)[-1]))
+
+
+def test_thing_is_expected_where_the_camera_would_see_it() -> None:
+    there = expected(known(), HERE, ROBOT)
+    assert there is not None
+    np.testing.assert_allclose(there.pixel, pixel_of(THING, HERE), atol=1e-6)
+    assert expected(known(), replace(HERE, heading=math.pi), ROBOT) is None
+
+
+@given(st.floats(-0.03, 0.03), st.floats(-0.03, 0.03))
+def test_pushed_thing_lies_in_the_region_in_which_it_is_sought(ahead: float, aside: float) -> None:
+    there = expected(known(0.005).pushed(), HERE, ROBOT)
+    assert there is not None
+    off = pixel_of(THING + np.array([ahead, aside, 0.0]), HERE) - there.pixel
+    assert off @ np.linalg.solve(there.covariance, off) < 9.0
+    assert spread(known(0.005).pushed()) > 1.5 * spread(known(0.005))
+
+
+@given(st.floats(0.05, 0.6))
+def test_region_grows_with_the_way_driven_since(back: float) -> None:
+    been = replace(known(), place=known().place.seen_from(HERE.after(PlanarStep(0.0, -back)), ROBOT))
+    assert spread(replace(been, place=been.place.seen_from(HERE, ROBOT))) > spread(known())
+
+
+@given(st.floats(0.0, 0.2))
+def test_farther_away_it_is_sought_at_a_smaller_size(back: float) -> None:
+    there = expected(known(), HERE.after(PlanarStep(0.0, -back)), ROBOT)
+    assert there is not None
+    distance = np.linalg.norm(points_in_camera(THING[None], HERE, ROBOT.camera)) + 0.9 * back
+    assert there.scales[0] == pytest.approx(SEEN.distance / distance, rel=0.06)
+    assert min(there.scales) < there.scales[0] < max(there.scales)
+
+
+def test_size_is_known_at_once_and_kept_where_it_cannot_be_measured_again() -> None:
+    run = run_with(known())
+    run.measured(NoSize("only 1 picture"), THING)
+    size = run.thing().size
+    assert isinstance(size, ThingSize) and size.width == pytest.approx(0.05)
+    np.testing.assert_allclose(size.axis_in_world, THING + np.array([0.02, 0.0, 0.0]), atol=1e-3)
+
+
+def test_place_and_size_are_remembered_as_they_are_known_now() -> None:
+    run = run_with(None)
+    run.measured(size_at(0.62, 0.03), THING)
+    keep_what_is_known(run)
+    kept = run.memory.known
+    assert kept is not None and kept.size is not None and kept.appearance is None
+    np.testing.assert_allclose(kept.place.point_in_world, THING, atol=1e-3)
+    assert kept.place.known_at == HERE and kept.size.seen_along == pytest.approx(0.0, abs=0.1)
+
+
+def test_grip_that_may_have_pushed_it_leaves_its_place_less_sure_and_its_size_as_it_is() -> None:
+    run = run_with(known(0.004))
+    _let_be_moved(run)
+    kept = run.memory.known
+    assert kept is not None and kept.size is not None and kept.size.width_sd == known().size.width_sd  # type: ignore[union-attr]
+    assert math.sqrt(kept.place.cov_in_world[0, 0]) == pytest.approx(math.hypot(0.004, PUSHED_SD))
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.2])
+def test_nothing_is_kept_when_the_place_looked_at_is_another_one(aside: float) -> None:
+    run = run_with(known(), THING + np.array([0.0, aside, 0.0]))
+    assert is_where_it_was(run) is (aside == 0.0)
+    run.forget()
+    assert run.memory.known is None and isinstance(run.size, NoSize)
