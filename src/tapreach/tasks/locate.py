@@ -15,6 +15,7 @@ from tapreach.tasks.camera_delay import is_worth_measuring, know_delay
 from tapreach.tasks.candidate_moves import SHORTEST_ADVANCE
 from tapreach.tasks.estimating import HeadingSource, LocatedPoint, estimate
 from tapreach.tasks.extent import extent_of_thing
+from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.fixed_move import fixed_step
@@ -92,6 +93,8 @@ class Locating:
         self._report = report
         self._accuracy = accuracy
         self._is_fixed = is_fixed
+        self.keep_clear: tuple[Obstacle, ...] = ()
+        """What else is known to stand there, in the world: no chosen move turns or drives into it."""
         self._known: KnownPlace | None = None
         self._stops: list[Sighting] = []
         self._estimate: LocatedPoint | None = None
@@ -126,8 +129,8 @@ class Locating:
         await self._measure()
         return self._conclusion(end)
 
-    async def recall(self, known: KnownPlace) -> None:
-        """Make use of where the tapped place was by an earlier look, from now on."""
+    async def recall(self, known: KnownPlace | None) -> None:
+        """Make use of where the tapped place was by an earlier look, from now on; None: of nothing."""
         self._known = known
         if self._stops:
             await self._renew_if_known()
@@ -310,6 +313,7 @@ class Locating:
             self._accuracy,
             seen is None or seen.heading_from is HeadingSource.BACKGROUND,
             self._context.description,
+            self.keep_clear,
         )
 
     @property

@@ -15,6 +15,8 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.candidate_moves import SIGMAS, Grid, coarse_grids, finer_grid, is_seen_and_clear
+from tapreach.tasks.clear_moves import ClearMoves
+from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Sighting, observation_of
 
@@ -80,13 +82,15 @@ def choose_move(
     most_back: float = 0.0,
     costs: MoveCosts | None = None,
     score: Score | None = None,
+    keep_clear: Sequence[Obstacle] = (),
 ) -> Choice | None:
     """Return the best turn and advance from `world_from_base`; None when none keeps the target in view.
 
     points_in_world: where the target may be, (3,) each, equally likely, the nearest first. The move keeps the
     middle one in the picture and at a distance, or a farther one when that cannot be; for each of the others
     it counts as far as it can be made. most_advance, most_back [m]: what may be driven. costs: MoveCosts()
-    when left out. score: the bound under the robot file's errors when left out.
+    when left out. score: the bound under the robot file's errors when left out. keep_clear: what else stands
+    there, in the world; the base turns and drives into none of it.
     """
     search = _Search(
         world_from_base,
@@ -94,6 +98,7 @@ def choose_move(
         description,
         costs or MoveCosts(),
         score or bound_score(sightings, description),
+        ClearMoves(keep_clear, points_in_world, world_from_base, description),
     )
     for kept in range(len(points_in_world) // 2, len(points_in_world)):
         grids = coarse_grids(world_from_base, points_in_world[kept], most_advance, most_back, description)
@@ -111,6 +116,7 @@ def planned_move(
     accuracy: float,
     turns_are_seen: bool,
     description: RobotDescription,
+    keep_clear: Sequence[Obstacle] = (),
 ) -> Choice | None:
     """Return `choose_move` as a task wants it: everything that goes in can travel to another process."""
     return choose_move(
@@ -122,6 +128,7 @@ def planned_move(
         most_back=room.behind,
         costs=MoveCosts(good_enough=accuracy),
         score=bound_score(sightings, description, turns_are_seen),
+        keep_clear=keep_clear,
     )
 
 
@@ -146,6 +153,7 @@ class _Search:
     description: RobotDescription
     costs: MoveCosts
     score: Score
+    clear: ClearMoves
 
     def best(self, coarse: Grid, kept: int) -> Choice | None:
         """Return the best candidate of a grid, refined; None when the point `kept` forbids them all.
@@ -171,7 +179,7 @@ class _Search:
             + self.costs.per_radian * np.abs(grid.turns)[:, None]
             + self.costs.per_metre * np.abs(grid.advances)[None, :]
         )
-        costs[~np.isfinite(relative_sds[kept])] = np.inf
+        costs[~(np.isfinite(relative_sds[kept]) & self.clear.of(grid))] = np.inf
         distance = self._distance(self.points_in_world[kept])
         return [
             Choice(

@@ -21,9 +21,9 @@ from tapreach.tasks.fetch.looking_again import (
 from tapreach.tasks.fetch.preview import ReachPreview, preview
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
-from tapreach.tasks.fetch.seen_obstacles import seen_obstacles
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.fetch.surroundings import to_plan_round
 from tapreach.tasks.fetch.thing import NoSize
 from tapreach.tasks.fetch.too_high import refused_by_sight, refused_unlocated, tap_within_reach_up_to
 from tapreach.tasks.follower import Follower, TargetLost
@@ -59,6 +59,7 @@ async def look(run: FetchRun) -> Ended:
     report = TargetReport(target_id, TargetSource.LOCATE, tap, context.description)
     follower = Follower(context, tap, key=target_id, uses_background=run.ways.use_background)
     run.locating = Locating(context, follower, report, ACCURACY, run.ways.fixed_move)
+    run.locating.keep_clear = (*run.others, *run.around.in_world())
     try:
         sentence = await locate_again(run, run.locating)
     except TargetLost as lost:
@@ -68,6 +69,7 @@ async def look(run: FetchRun) -> Ended:
         return _not_located(Ended(Outcome.UNSURE, sentence), within, estimate)
     if not is_where_it_was(run):
         run.forget()
+        await run.locating.recall(None)
     point = run.thing().point_in_world
     run.measured(run.locating.size or NoSize("it was not measured"), point)
     keep_what_is_known(run)
@@ -111,15 +113,17 @@ async def judge_reach(run: FetchRun) -> Ended:
 
 
 async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
-    """Return the preview from where the base is now: round what is told and what the pictures show, if a way
-    leads there; else round what is told. What is seen may be wrong, and shall not end a fetch.
+    """Return the preview from where the base is now, round what is told and what the pictures have shown, as
+    far as a way leads there.
     """
     thing, estimate = run.thing(), run.locating.estimate if run.locating is not None else None
     plan = partial(preview, free_behind=way_behind(run.context.poses), is_last_look=is_last_look)
-    seen = () if estimate is None else await seen_obstacles(run.context, estimate, thing)
-    for obstacles in ((*run.others, *seen), tuple(run.others)):
+    if estimate is not None:
+        await run.around.look(run.context, estimate, thing)
+    seen = run.around.obstacles(run.here, thing, run.context.description)
+    for obstacles in to_plan_round(run.others, seen):
         found = await run.context.compute.call(plan, thing, obstacles, run.here, run.context.description)
-        if found.approach is not None or not seen:
+        if found.approach is not None:
             break
     return found
 

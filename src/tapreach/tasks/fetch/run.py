@@ -17,6 +17,7 @@ from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.preview import ReachPreview
 from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.fetch.surroundings import SeenAround
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tapreach.tasks.fetch.ways import Ways
 from tapreach.tasks.locate import Locating
@@ -54,6 +55,7 @@ class FetchRun:
     axis_offset: FloatArray | None = None
     earlier_size: ThingSize | None = None
     preview: ReachPreview | None = None
+    around: SeenAround = field(default_factory=SeenAround)
 
     def __post_init__(self) -> None:
         self.recall_size()

@@ -51,14 +51,14 @@ def obstacles_in_views(
     kept = [each for i, each in enumerate(located.sightings) if i not in located.rejected_views]
     views = standing_views(kept, located.base_from_camera, point, jpegs, description)
     newest = located.sightings[-1].world_from_base
-    here, there, own = np.array([newest.x, newest.y]), *_own_room(thing)
+    here, there, own = np.array([newest.x, newest.y]), *own_room(thing)
     others = _without_own(standing_points(views), there, own)
     found = [each for each in clustered(others) if _from(here, each.centre) > _UNDER_ROBOT]
-    ranked = sorted(((_off_way(each, here, there), i) for i, each in enumerate(found)))
+    ranked = sorted(((off_way(each, here, there), i) for i, each in enumerate(found)))
     return tuple(found[i] for off, i in ranked if off < BESIDE)[:_MOST]
 
 
-def _own_room(thing: Thing) -> tuple[FloatArray, float]:
+def own_room(thing: Thing) -> tuple[FloatArray, float]:
     """Return the thing's middle (2,) and the radius within which all is its own."""
     if isinstance(thing.size, ThingSize):
         return np.asarray(thing.size.axis_in_world[:2]), thing.size.width / 2.0 + ITS_OWN
@@ -69,7 +69,7 @@ def _without_own(found: StandingPoints, middle: FloatArray, radius: float) -> St
     return found.where(np.linalg.norm(found.points[:, :2] - middle, axis=1) > radius)
 
 
-def _off_way(obstacle: Obstacle, here: FloatArray, there: FloatArray) -> float:
+def off_way(obstacle: Obstacle, here: FloatArray, there: FloatArray) -> float:
     """Return how far it is from the straight way [m]; infinite beyond the thing."""
     ahead = (there - here) / max(_from(here, there), 1e-9)
     if float((obstacle.centre - there) @ ahead) > BEYOND:

@@ -10,7 +10,7 @@ from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
-from tapreach.tasks.fetch.obstacle import into
+from tapreach.tasks.fetch.obstacle import into, out_of
 
 MARGIN = 0.04
 """What nears the edge of the picture by this share of its width does not count as well seen."""
@@ -69,6 +69,10 @@ class Sight:
         line = thing.front_line(np.array([base.x, base.y]))
         seen = line[self._well_seen(line, base), 2]
         return (float(seen.min()), float(seen.max())) if len(seen) else None
+
+    def place_on_floor(self, base: PlanarPose) -> FloatArray:
+        """Return above which place (2,) of the floor the camera is, the base standing at `base` [m]."""
+        return np.asarray(out_of(base, (-self.rotation.T @ self.offset)[None, :2])[0])
 
     def _well_seen(self, points: FloatArray, base: PlanarPose) -> npt.NDArray[np.bool_]:
         in_base = np.column_stack([into(base, points[:, :2]), points[:, 2]])

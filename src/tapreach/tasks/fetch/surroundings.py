@@ -1,0 +1,103 @@
+"""What a fetch knows to stand around it: what it was told, and what its looks on the way have shown."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.config import RobotDescription
+from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings
+from tapreach.tasks.fetch.outline import Outline
+from tapreach.tasks.fetch.remembered import Look, Remembered, after_look
+from tapreach.tasks.fetch.seen_obstacles import own_room, seen_obstacles
+from tapreach.tasks.fetch.sight import Sight
+from tapreach.tasks.fetch.thing import Thing
+from tapreach.tasks.task import TaskContext
+
+_CLEAR_OF_ROBOT = 0.005
+"""What was seen is so far from where the robot stands [m] at least, or it would not stand there."""
+_LEAST_RADIUS = 0.01
+
+
+@dataclass
+class SeenAround:
+    """What the looks of one fetch have shown; in the world of the present odometry.
+
+    poses: of the views, by frame id, as the newest look knows them.
+    """
+
+    known: tuple[Remembered, ...] = ()
+    poses: dict[int, PlanarPose] | None = None
+    newest: int | None = None
+
+    async def look(self, context: TaskContext, located: LocatedPoint, thing: Thing) -> None:
+        """Take what the pictures of the sightings show; those that were looked at before say nothing new."""
+        frame_id = located.sightings[-1].frame_id
+        if frame_id == self.newest:
+            return
+        self.newest = frame_id
+        self.poses = {each.frame_id: each.world_from_base for each in located.sightings}
+        found = await seen_obstacles(context, located, thing)
+        middle, radius = own_room(thing)
+        goal = Obstacle("it", middle, middle, radius, 0.0)
+        look = Look(frame_id, self.poses, Sight.of(context.description), goal)
+        self.known = after_look(self.known, found, look)
+
+    def in_world(self) -> tuple[Obstacle, ...]:
+        """Return all that was seen where it is now known to stand."""
+        return tuple(each.in_world(self.poses or {}) for each in self.known)
+
+    def obstacles(self, here: PlanarPose, thing: Thing, description: RobotDescription) -> list["Seen"]:
+        """Return what stands around, without the robot at `here` and the thing itself."""
+        middle, radius = own_room(thing)
+        outline = Outline.of(description).at(here)
+        found = []
+        for each in self.known:
+            there = each.in_world(self.poses or {})
+            beside = _beside(there, float(Surroundings.of([there]).clearances(outline)[0]))
+            if beside is not None and not there.may_be_at(middle, radius - there.spread):
+                found.append(Seen(beside, each.is_sure))
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """An obstacle of the world; is_sure: more than one look has shown it."""
+
+    obstacle: Obstacle
+    is_sure: bool
+
+    @property
+    def squeezed(self) -> Obstacle:
+        """The obstacle without what its place may be off."""
+        return replace(self.obstacle, spread=0.0)
+
+
+def to_plan_round(told: Sequence[Obstacle], seen: Sequence[Seen]) -> list[tuple[Obstacle, ...]]:
+    """Return what a way is sought around, until one is found: all, as large as it may be; what was seen just
+    as it was seen; only what was seen more than once; only what was told.
+
+    What is seen may be wrong, and shall not end a fetch.
+    """
+    ways = [
+        tuple(each.obstacle for each in seen),
+        tuple(each.squeezed for each in seen),
+        tuple(each.squeezed for each in seen if each.is_sure),
+        (),
+    ]
+    different = [way for i, way in enumerate(ways) if i < 2 or len(way) < len(ways[i - 1])]
+    return [(*told, *way) for way in (different if seen else ways[-1:])]
+
+
+def _beside(obstacle: Obstacle, clearance: float) -> Obstacle | None:
+    """Return an obstacle made so small that it is `clearance` [m] or more from the robot; None for what the
+    robot would stand on.
+    """
+    lacking = max(0.0, _CLEAR_OF_ROBOT - clearance)
+    spread = max(0.0, obstacle.spread - lacking)
+    radius = obstacle.radius - max(0.0, lacking - obstacle.spread)
+    if radius < _LEAST_RADIUS or not np.isfinite(radius):
+        return None
+    return replace(obstacle, radius=radius, spread=spread)

@@ -1,0 +1,57 @@
+"""What ways are sought around: no seen thing stands where the robot does, and none can end a fetch."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings
+from tapreach.tasks.fetch.outline import Outline
+from tapreach.tasks.fetch.remembered import Remembered
+from tapreach.tasks.fetch.seen_obstacles import own_room
+from tapreach.tasks.fetch.surroundings import Seen, SeenAround, to_plan_round
+from tasks.fetch.worlds import ROBOT, obstacle_at, thing_at
+
+GOAL = thing_at(1.2, 0.1)
+coordinates = st.floats(-0.5, 1.5)
+spreads = st.floats(0.0, 0.03)
+
+
+def seen_at(x: float, y: float, radius: float = 0.03, sd: float = 0.005, looks: int = 1) -> Remembered:
+    return Remembered(obstacle_at("something", x, y, radius, sd), 1, PlanarPose(), looks)
+
+
+def around(*known: Remembered) -> list[Obstacle]:
+    return [each.obstacle for each in SeenAround(known).obstacles(PlanarPose(), GOAL, ROBOT)]
+
+
+@given(coordinates, coordinates, st.floats(0.015, 0.05), spreads)
+def test_nothing_seen_stands_where_the_robot_or_the_thing_does(
+    x: float, y: float, radius: float, sd: float
+) -> None:
+    middle, own = own_room(GOAL)
+    outline = Outline.of(ROBOT).corners
+    for obstacle in around(seen_at(x, y, radius, sd)):
+        assert Surroundings.of([obstacle]).clearances(outline)[0] > 0.0
+        assert np.linalg.norm(obstacle.centre - middle) > own
+        assert obstacle.radius <= radius
+
+
+def test_what_stands_apart_stays_as_it_was_seen() -> None:
+    (obstacle,) = around(seen_at(0.7, -0.3))
+    assert np.allclose(obstacle.centre, (0.7, -0.3))
+    assert obstacle.radius == 0.03
+
+
+def test_ways_are_sought_around_ever_less_and_at_last_around_what_is_told_alone() -> None:
+    told = [obstacle_at("target 2", 0.5, 0.4)]
+    seen = [Seen(obstacle_at("something", 0.6, 0.1), True), Seen(obstacle_at("something", 0.9, -0.1), False)]
+    every, squeezed, sure, last = to_plan_round(told, seen)
+    assert [len(every), len(squeezed), len(sure), len(last)] == [3, 3, 2, 1]
+    assert all(a.spread >= b.spread for a, b in zip(every, squeezed, strict=True))
+    assert all(way[0] is told[0] for way in (every, squeezed, sure, last))
+
+
+def test_without_anything_seen_there_is_one_plan() -> None:
+    told = [obstacle_at("target 2", 0.5, 0.4)]
+    assert to_plan_round(told, []) == [tuple(told)]
