@@ -12,7 +12,7 @@ from tapreach.estimation.rotation_from_background import rotation_from_backgroun
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.depth_geometry import DepthGeometry
-from tapreach.tasks.depth_views import HALF, DepthViews
+from tapreach.tasks.depth_views import DepthViews
 from tapreach.tasks.estimating import estimate
 from tapreach.tasks.following import TrackUnknown, check, close_track, follow, open_track
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
@@ -89,16 +89,17 @@ def pictures(is_plain=False):
 @lru_cache(maxsize=len(POSES))
 def way_to(number):
     """What the background says of the way from the tapped frame: that the wheels are right."""
-    if number == 0:
-        return None
-    rng = np.random.default_rng(number)
+    return None if number == 0 else way_between(0, POSES[0], POSES[number])
+
+
+def way_between(since, start, pose):
+    rng = np.random.default_rng(since)
     points = rng.uniform([0.6, -1.5, 0.0], [4.0, 2.5, 1.5], (600, 3))
-    pose = POSES[number]
-    before, now = (CAMERA.project((at.to_rigid() * MOUNT).inv().apply(points)) for at in (POSES[0], pose))
+    before, now = (CAMERA.project((at.to_rigid() * MOUNT).inv().apply(points)) for at in (start, pose))
     both = before.is_inside & now.is_inside
-    step = camera_step(POSES[0].between(pose), odometry_noise(ROBOT), MOUNT, mount_noise(ROBOT))
+    step = camera_step(start.between(pose), odometry_noise(ROBOT), MOUNT, mount_noise(ROBOT))
     seen = now.pixels[both] + 0.2 * rng.normal(size=(both.sum(), 2))
-    return SeenWay(0, rotation_from_background(before.pixels[both], seen, CAMERA, step).knowledge)
+    return SeenWay(since, rotation_from_background(before.pixels[both], seen, CAMERA, step).knowledge)
 
 
 def sighting(number, depth):
@@ -183,7 +184,7 @@ def test_no_more_than_twenty_frames_are_kept_and_the_ends_stay():
 
 def test_warps_and_their_covariance_are_those_of_the_cameras():
     straight = straightened([replace(sighting(number, DEPTH), way=None) for number in range(7)], ROBOT)
-    geometry = DepthGeometry(straight, ROBOT, PLACE, HALF, 1.0)
+    geometry = DepthGeometry(straight, ROBOT, PLACE, 8, 1.0)
     (warp,) = geometry.warps(4, np.array([1.0 / DEPTH]))
     pixel = pixel_of(DEPTH, POSES[4])
     assert warp[:, 2] == pytest.approx([pixel.u, pixel.v], abs=1e-6)
@@ -229,3 +230,23 @@ def test_place_that_grew_past_comparing_stays_as_it_was_followed():
         checked = views.check()
         assert checked.layer is not None
         assert checked.sightings[-1] == replace(there, sigma=0.6)
+
+
+def test_later_pictures_are_compared_with_one_seen_from_nearer():
+    """The tapped picture shows too little; a slide later on is told by a sharper one taken on the way."""
+    front, behind = (texture(seed)[:480, :640] for seed in (21, 22))
+    views = DepthViews(cv2.GaussianBlur(pictures()[0], (0, 0), 3.0), sighting(0, DEPTH), ROBOT)
+    for number in range(1, 7):
+        views.keep(sighting(number, DEPTH), pictures()[number], 0.0, is_seen=True, is_stop=True)
+    drive = {number: PlanarPose(0.035 * (number - 6), 0.06, -0.2) for number in range(7, 20)}
+    for number, pose in drive.items():
+        true, has_slid = pixel_of(DEPTH, pose), number > 15
+        place = Pixel(true.u + 9.0, true.v - 6.0) if has_slid else true
+        way = way_between(15, drive[15], pose) if has_slid else way_between(0, POSES[0], pose)
+        there = Sighting(number, number, place, 0.3, 1.0, pose, way, is_key=number == 15)
+        views.keep(there, pictured(pose, front, behind, number), 0.0, is_seen=True, is_stop=True)
+        if number in (15, 19):
+            checked = views.check()
+            assert checked.layer is not None
+    assert [each.frame_id for each in checked.sightings] == list(range(20))
+    assert max(off(each) for each in checked.sightings) < 2.0

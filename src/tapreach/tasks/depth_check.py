@@ -15,10 +15,12 @@ from tapreach.geometry.pixel import Pixel
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.depth_search import KeptView, Swept, swept
 from tapreach.tasks.sighting import Sighting
-from tapreach.vision.core import seen_from_elsewhere
+from tapreach.vision.core import looseness, seen_from_elsewhere
 from tapreach.vision.depth_sweep import DepthSweep
-from tapreach.vision.look import Fit, Look, fit_look
-from tapreach.vision.warp import Warp, scale_of
+from tapreach.vision.image_io import Gray
+from tapreach.vision.look import Fit, Look, fit_look, tapped_look
+from tapreach.vision.patch import patch_of_half
+from tapreach.vision.warp import Warp, scale_of, warp_at
 
 _LEAST_AGREEMENT = 0.6
 """Share of the thing's own samples that must agree where it is measured."""
@@ -34,6 +36,10 @@ _SAME = 2.0
 """Two measurements so many sigmas apart at most may be of the same place."""
 _LEAST_SIGMA = 0.15
 _LEAST_VIEWS = 3
+_HALF, _FINE_HALF = 8, 12
+"""The patch that is compared: so many samples to either side, of the tapped picture or of one seen from
+nearer. A larger one sees more of what is behind.
+"""
 _UNCONFIRMED = 2.0
 """Sigmas of sightings that cannot be confirmed count so many times; measured on taps that could not be."""
 
@@ -44,7 +50,7 @@ class Checked:
 
     sightings: the tapped one first. layer: (n²,) how surely each sample of the patch is of the thing; None
     where nothing is confirmed, and `doubt` then says why if something speaks against it. newest: where the
-    patch is in the newest picture, None where it is not found there.
+    tapped patch is in the newest picture, None where it is not found there and was not followed there either.
     """
 
     sightings: tuple[Sighting, ...]
@@ -53,15 +59,41 @@ class Checked:
     doubt: str = ""
 
 
-class DepthCheck:
-    """Checks one tapped place. look: of the tapped patch. loose: (2, 2) [px²], see core.looseness."""
+@dataclass(frozen=True, eq=False)
+class Anchor:
+    """The picture whose patch the others are compared with: the tapped one, or later one seen from nearer.
 
-    def __init__(self, look: Look, loose: FloatArray, description: RobotDescription) -> None:
-        self._look, self._loose, self._description = look, loose, description
-        self._sweep = DepthSweep(look.patch)
+    look: of its patch. loose: (2, 2) [px²], see core.looseness. from_tapped: (2, 2) from the tapped patch to
+    its pixels. sigma: of its place against the tapped one [px].
+    """
+
+    look: Look
+    loose: FloatArray
+    from_tapped: FloatArray
+    sigma: float
+
+    @classmethod
+    def at(cls, picture: Gray, warp: Warp, sigma: float) -> "Anchor":
+        """Return the anchor at a place: warp (2, 3) from the tapped patch to the picture.
+
+        Its patch shows as much of the thing as the tapped one, the finer the nearer it is seen from.
+        """
+        (u, v), scale = map(float, warp[:, 2]), scale_of(warp)
+        half = _HALF if scale <= 1.0 else _FINE_HALF
+        patch = patch_of_half(picture, warp_at(u, v, max(1.0, scale * _HALF / half)), half)
+        return cls(tapped_look(patch, picture), looseness(picture, u, v), warp[:, :2], sigma)
+
+
+class DepthCheck:
+    """Checks one tapped place against the patch of an anchor."""
+
+    def __init__(self, anchor: Anchor, description: RobotDescription) -> None:
+        self._anchor, self._description = anchor, description
+        self._look, self._loose = anchor.look, anchor.loose
+        self._sweep = DepthSweep(anchor.look.patch)
 
     def check(self, views: Sequence[KeptView]) -> Checked:
-        """Compare and measure again. views: in the order of time, the tapped one first."""
+        """Compare and measure again. views: in the order of time, the anchor's first."""
         found = swept(self._sweep, views, self._description)
         if found is None:
             return Checked(tuple(view.sighting for view in views if view.is_seen))
@@ -74,7 +106,9 @@ class DepthCheck:
         newest = measured[-1]
         if newest is None:
             return Checked(sightings, found.layer)
-        warp = np.column_stack([found.warps[-1][:, :2], newest.pixel.to_array()])
+        place = newest.pixel.to_array()
+        linear = _with_linear(place, found.warps[-1], 1.0 / self._sweep.patch.step)[:, :2]
+        warp = np.column_stack([linear @ self._anchor.from_tapped, place])
         return Checked(sightings, found.layer, warp)
 
     def _measured(self, found: Swept, number: int, view: KeptView) -> Sighting | None:
@@ -89,10 +123,12 @@ class DepthCheck:
             return _unconfirmed(view) if _is_followed_to(view, expected, covariance) else None
         fit = fit.fused_with(expected[:, 2], covariance)
         sigma = max(_LEAST_SIGMA, seen_from_elsewhere(fit.covariance, fit.warp, self._loose))
+        sigma = math.hypot(sigma, scale_of(fit.warp) * self._anchor.sigma)
         pixel = Pixel(*map(float, fit.warp[:, 2]))
         if not pixel.is_inside(self._description.camera.model().size):
             return None
-        again = replace(view.sighting, pixel=pixel, sigma=sigma, scale=scale_of(fit.warp))
+        scale = scale_of(fit.warp[:, :2] @ self._anchor.from_tapped)
+        again = replace(view.sighting, pixel=pixel, sigma=sigma, scale=scale)
         if view.is_seen and _says_the_same_better(view.sighting, again, expected, covariance):
             return view.sighting
         return replace(again, sigma=math.hypot(sigma, view.moved_px))
@@ -102,28 +138,35 @@ class DepthCheck:
         place = view.sighting.pixel.to_array()
         if float(np.linalg.norm(place - expected[:, 2])) > _NEAR * scale_of(expected):
             return False
-        warp = np.column_stack([expected[:, :2], place])
+        warp = _with_linear(place, expected)
         return self._sweep.agreement(view.pyramid, warp, layer) >= _SURE
 
     def _fit(self, found: Swept, number: int, view: KeptView) -> Fit | None:
         """Return where the patch lies, from where it is expected or else from where it was followed to."""
         expected, covariance = found.warps[number], found.covariances[number]
         look = self._look.with_layer(found.layer)
-        starts = [expected]
+        step = self._sweep.patch.step
+        starts = [_with_linear(expected[:, 2], expected, 1.0 / step)]
         if view.is_seen:
-            starts.append(np.column_stack([expected[:, :2], view.sighting.pixel.to_array()]))
+            starts.append(_with_linear(view.sighting.pixel.to_array(), expected, 1.0 / step))
         least = max(_LEAST_AGREEMENT, self._sweep.agreement(view.pyramid, expected, found.layer) - _SLACK)
         best: tuple[float, Fit] | None = None
         for start in starts:
             fit = fit_look(look, view.pyramid[0], start)
             if fit is None or not _is_expected(fit.warp[:, 2], expected, covariance):
                 continue
-            agreement = self._sweep.agreement(view.pyramid, fit.warp, found.layer)
+            of_samples = _with_linear(fit.warp[:, 2], fit.warp, step)
+            agreement = self._sweep.agreement(view.pyramid, of_samples, found.layer)
             if agreement >= (best[0] if best is not None else least):
                 best = agreement, fit
             if agreement >= _ENOUGH:
                 break
         return best[1] if best is not None else None
+
+
+def _with_linear(place: FloatArray, warp: Warp, factor: float = 1.0) -> Warp:
+    """Return the warp moved to a place (2,), its linear part times `factor`."""
+    return np.column_stack([factor * warp[:, :2], place])
 
 
 def _doubted(views: Sequence[KeptView]) -> tuple[Sighting, ...]:

@@ -1,32 +1,37 @@
 """The pictures of a followed place that are kept for comparing all of them at once."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot, radians
 
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
-from tapreach.tasks.depth_check import Checked, DepthCheck
+from tapreach.tasks.depth_check import Anchor, Checked, DepthCheck
 from tapreach.tasks.depth_search import KeptView
 from tapreach.tasks.sighting import Sighting, is_apart
-from tapreach.vision.core import looseness
 from tapreach.vision.depth_sweep import pyramid_of
 from tapreach.vision.image_io import Gray
-from tapreach.vision.look import tapped_look
-from tapreach.vision.patch import patch_of_half
-from tapreach.vision.warp import warp_at
+from tapreach.vision.warp import Warp, scale_of, warp_at
 
-HALF = 8
-"""The patch that is compared: so many samples to either side. A larger one sees more of what is behind."""
 _APART = 0.03, radians(3.0)
 _MOST = 20
+_NEARER = 1.5
+"""A picture in which the place is seen so many times larger than in the one that others are compared with
+takes its place.
+"""
 
 
 class DepthViews:
-    """first: the tapped frame's sighting, with its picture. At most 20 frames are kept, in order of time."""
+    """first: the tapped frame's sighting, with its picture. At most 20 frames are kept, in order of time, of
+    those since the one that they are compared with.
+    """
 
     def __init__(self, picture: Gray, first: Sighting, description: RobotDescription) -> None:
-        u, v = first.pixel.u, first.pixel.v
-        look = tapped_look(patch_of_half(picture, warp_at(u, v), HALF), picture)
-        self._check = DepthCheck(look, looseness(picture, u, v), description)
+        self._description = description
+        self._check = DepthCheck(Anchor.at(picture, warp_at(first.pixel.u, first.pixel.v), 0.0), description)
+        self._anchor_scale = 1.0
+        self._before: tuple[Sighting, ...] = ()
+        """What is believed of the frames before the one that others are compared with."""
         self._views = [KeptView(first, pyramid_of(picture))]
 
     @property
@@ -47,12 +52,24 @@ class DepthViews:
             del self._views[self._least_missed()]
 
     def check(self) -> Checked:
-        """Return what is to be believed of the sightings of the frames kept, and go on from that."""
+        """Return what is to be believed of the sightings so far, and go on from that."""
         checked = self._check.check(self._views)
+        believed = replace(checked, sightings=(*self._before, *checked.sightings))
         if checked.layer is not None:
             measured = {sighting.frame_id: sighting for sighting in checked.sightings}
             self._views = [_with(view, measured.get(view.sighting.frame_id)) for view in self._views]
-        return checked
+        if checked.newest is not None and scale_of(checked.newest) > _NEARER * self._anchor_scale:
+            self._compare_with_newest(checked.newest, believed.sightings)
+        return believed
+
+    def _compare_with_newest(self, warp: Warp, believed: Sequence[Sighting]) -> None:
+        """Compare what comes with the newest picture, in which the place is at `warp` (2, 3) from the tapped
+        patch.
+        """
+        newest = self._views[-1]
+        self._check = DepthCheck(Anchor.at(newest.pyramid[0], warp, newest.sighting.sigma), self._description)
+        self._anchor_scale = scale_of(warp)
+        self._before, self._views = tuple(believed[:-1]), [newest]
 
     def _is_apart(self, here: PlanarPose) -> bool:
         return all(is_apart(view.sighting.world_from_base, here, *_APART) for view in self._views)
