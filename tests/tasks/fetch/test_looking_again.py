@@ -1,8 +1,10 @@
 """Looking for the thing again: where it should be in the picture, what of it is kept, and what forgotten."""
 
+import asyncio
 import math
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,11 +12,12 @@ from hypothesis import strategies as st
 
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
+from tapreach.robot.messages import ArmPose, Frame
 from tapreach.tasks.estimating import LocatedPoint, estimate
 from tapreach.tasks.fetch.fetch_state import Mode
 from tapreach.tasks.fetch.gripping import _let_be_moved
 from tapreach.tasks.fetch.known_thing import PUSHED_SD, Appearance, KnownThing
-from tapreach.tasks.fetch.looking_again import expected, is_where_it_was, keep_what_is_known
+from tapreach.tasks.fetch.looking_again import expected, is_where_it_was, keep_what_is_known, tap_again
 from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.run import FetchRun
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
@@ -40,6 +43,40 @@ class Located:
 def pixel_of(thing: np.ndarray, here: PlanarPose) -> np.ndarray:
     in_camera = points_in_camera(thing[None], here, ROBOT.camera)
     return np.asarray(optics_of(ROBOT.camera)[0].project(in_camera).pixels[0])
+
+
+class FoldedArm:
+    """An arm that is out of the picture."""
+
+    async def target(self) -> ArmPose:
+        return ROBOT.arm.standard.pose()
+
+
+def picture(thing: np.ndarray | None) -> bytes:
+    """What the camera sees from HERE: a textured floor, and a textured thing unless it is gone."""
+    rng = np.random.default_rng(8)
+    noise = cv2.GaussianBlur(rng.normal(size=(480, 640)).astype(np.float32), (0, 0), 5.0)
+    seen = 128.0 + 40.0 * noise / noise.std()
+    if thing is not None:
+        u, v = (round(float(each)) for each in pixel_of(thing, HERE))
+        coat = cv2.GaussianBlur(rng.normal(size=(61, 61)).astype(np.float32), (0, 0), 2.5)
+        seen[v - 30 : v + 31, u - 30 : u + 31] = 120.0 + 45.0 * coat / coat.std()
+    return bytes(cv2.imencode(".jpg", np.clip(seen, 0, 255).astype(np.uint8))[1])
+
+
+def looking_at(what: KnownThing, seen: bytes) -> Tap | None:
+    """Where the thing is tapped again when the next picture is `seen`."""
+    context = bare_context()
+    now_ns = context.clock.now_ns()
+    context.poses.add(now_ns, HERE)
+    context.poses.add(now_ns + 1, HERE)
+
+    async def next_frame(frame_id: int) -> Frame:
+        return Frame(7, now_ns, now_ns, ROBOT.camera.model().size, seen)
+
+    context = replace(context, next_frame=next_frame)
+    run = FetchRun(context, FetchMemory(Tap(1, 1.0, 1.0), 1, Mode.GO, known=what), (), FoldedArm())  # type: ignore[arg-type]
+    return asyncio.run(tap_again(run))
 
 
 def known(sd: float = 0.01) -> KnownThing:
@@ -131,3 +168,21 @@ def test_nothing_is_kept_when_the_place_looked_at_is_another_one(aside: float) -
     assert is_where_it_was(run) is (aside == 0.0)
     run.forget()
     assert run.memory.known is None and isinstance(run.size, NoSize)
+
+
+@pytest.mark.parametrize("push", [(0.0, 0.0), (0.02, 0.03), (0.03, -0.04)])
+def test_thing_pushed_by_the_claw_is_tapped_where_it_is_now(push: tuple[float, float]) -> None:
+    looked = Appearance(picture(THING), Pixel(*map(float, pixel_of(THING, HERE))), 0.5)
+    what = replace(known(0.004), appearance=looked).pushed()
+    pushed = THING + np.array([*push, 0.0])
+    tap = looking_at(what, picture(pushed))
+    assert tap is not None and tap.frame_id == 7
+    np.testing.assert_allclose((tap.u, tap.v), pixel_of(pushed, HERE), atol=2.0)
+
+
+def test_thing_that_is_gone_or_stands_far_from_where_it_was_is_not_tapped() -> None:
+    looked = Appearance(picture(THING), Pixel(*map(float, pixel_of(THING, HERE))), 0.5)
+    what = replace(known(0.004), appearance=looked)
+    assert looking_at(what, picture(None)) is None
+    assert looking_at(what, picture(THING + np.array([0.05, 0.12, 0.0]))) is None
+    assert looking_at(known(), picture(THING)) is None, "a picture that cannot be used"

@@ -12,16 +12,18 @@ import numpy as np
 from tapreach.errors import FrameError
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
+from tapreach.robot.messages import Frame
 from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold
 from tapreach.tasks.fetch.known_thing import Appearance, KnownThing
 from tapreach.tasks.fetch.run import FetchRun
 from tapreach.tasks.fetch.thing import ThingSize
+from tapreach.tasks.follower import LATEST_NS
 from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.known_place import KnownPlace
 from tapreach.tasks.locate import Locating
 from tapreach.tasks.optics import optics_of
-from tapreach.tasks.task import Tap
+from tapreach.tasks.task import Tap, TaskContext
 from tapreach.vision.image_io import BrokenPicture, decode_gray
 from tapreach.vision.seen_again import Expected, SeenAgain, seen_again
 
@@ -80,8 +82,7 @@ async def tap_again(run: FetchRun) -> Tap | None:
     if known is None or known.appearance is None:
         return None
     await _out_of_the_picture(run)
-    newest = context.frames.newest
-    frame = await context.next_frame(newest.frame_id if newest is not None else 0)
+    frame = await _frame_from_now_on(context)
     here = await pose_at(context, frame.captured_ns)
     there = expected(known, here, context.description)
     if there is None:
@@ -92,6 +93,16 @@ async def tap_again(run: FetchRun) -> Tap | None:
         return None
     u, v = map(float, found.pixel)
     return Tap(frame.frame_id, u, v)
+
+
+async def _frame_from_now_on(context: TaskContext) -> Frame:
+    """Return the first picture taken from now on, or what comes after a second of waiting for it."""
+    now_ns, newest = context.clock.now_ns(), context.frames.newest
+    while True:
+        newest = await context.next_frame(newest.frame_id if newest is not None else 0)
+        is_late = context.clock.now_ns() - now_ns > LATEST_NS
+        if is_late or context.camera_delay.taken_ns(newest.captured_ns) >= now_ns:
+            return newest
 
 
 async def _out_of_the_picture(run: FetchRun) -> None:
