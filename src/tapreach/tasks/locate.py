@@ -342,7 +342,9 @@ class Locating:
 
     def _no_position(self, target: Target) -> str:
         if self._driven == 0.0:
-            return "no position: no move keeps this in the picture. Drive back or turn to it, and tap again"
+            clear = " and clear of what stands there" if self.keep_clear else ""
+            why = f"no move keeps this in the picture{clear}"
+            return f"no position: {why}. Drive back or turn to it, and tap again"
         reason = self._cut_short if self._cut_short in (BLOCKED, SLIPPING) else target.reason
         return " ".join(part for part in (f"no position: {reason}.", target.advice) if part)
 
