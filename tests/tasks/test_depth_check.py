@@ -226,10 +226,8 @@ def test_place_that_grew_past_comparing_stays_as_it_was_followed():
         sighting(6, DEPTH), frame_id=9, pixel=pixel_of(DEPTH, near), world_from_base=near, way=None
     )
     views.keep(there, blurred, 0.0, is_seen=True, is_stop=True)
-    for _ in range(2):
-        checked = views.check()
-        assert checked.layer is not None
-        assert checked.sightings[-1] == replace(there, sigma=0.6)
+    assert views.check().sightings[-1] == replace(there, sigma=0.6)
+    assert views.check().sightings[-1] == replace(there, sigma=0.6)
 
 
 def test_later_pictures_are_compared_with_one_seen_from_nearer():
@@ -249,4 +247,4 @@ def test_later_pictures_are_compared_with_one_seen_from_nearer():
             checked = views.check()
             assert checked.layer is not None
     assert [each.frame_id for each in checked.sightings] == list(range(20))
-    assert max(off(each) for each in checked.sightings) < 2.0
+    assert max(off(each) for each in checked.sightings) < 0.5  # the tapped picture alone: 1.0

@@ -66,10 +66,11 @@ class DepthViews:
         """Compare what comes with the newest picture, in which the place is at `warp` (2, 3) from the tapped
         patch.
         """
-        newest = self._views[-1]
-        self._check = DepthCheck(Anchor.at(newest.pyramid[0], warp, newest.sighting.sigma), self._description)
+        *before, newest = believed
+        view = replace(self._views[-1], sighting=newest)
+        self._check = DepthCheck(Anchor.at(view.pyramid[0], warp, newest.sigma), self._description)
         self._anchor_scale = scale_of(warp)
-        self._before, self._views = tuple(believed[:-1]), [newest]
+        self._before, self._views = tuple(before), [view]
 
     def _is_apart(self, here: PlanarPose) -> bool:
         return all(is_apart(view.sighting.world_from_base, here, *_APART) for view in self._views)

@@ -6,6 +6,7 @@ import numpy as np
 
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch.approach import Approach, Leg
+from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.looking import in_words, measure, previewed
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -36,21 +37,20 @@ async def approach(run: FetchRun) -> Ended:
         try:
             await drive(run, leg)
         except TargetLost as lost:
-            return Ended(Outcome.LOST, str(lost))
+            return _anew(run) or Ended(Outcome.LOST, str(lost))
         await measure(run)
+        if _is_lost(run, LOOK_ANEW_SD) and (anew := _anew(run)):
+            return anew
     return Ended(Outcome.CANNOT, f"did not arrive before it in {MOST_LEGS} legs: the way keeps changing")
 
 
 async def last_look(run: FetchRun) -> Ended:
     """Measure the thing from near and decide on the grasp."""
-    loss, sd = _loss(run), _place_sd(run)
-    if loss and sd > BLIND_SD:
-        return Ended(
-            Outcome.LOST, f"lost the thing, its place is known to ±{2000.0 * sd:.0f} mm only: {loss}"
-        )
-    if run.ways.renews_on_way and sd > LOOK_ANEW_SD and run.memory.looks < MOST_LOOKS:
-        run.remember(looks=run.memory.looks + 1)
-        return Ended(Outcome.UNSURE, f"its place is known to ±{2000.0 * sd:.0f} mm only: located anew")
+    is_lost = _is_lost(run, BLIND_SD)
+    if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := _anew(run)):
+        return anew
+    if is_lost:
+        return Ended(Outcome.LOST, f"lost the thing, {_known_to(run)}: {_loss(run)}")
     await measure(run)
     seen = run.preview = await previewed(run, is_last_look=True)
     if seen.verdict is Verdict.NO or seen.approach is None:
@@ -58,6 +58,27 @@ async def last_look(run: FetchRun) -> Ended:
     if next_leg(seen.approach) is not None:
         return Ended(Outcome.MISSED, "measured from near, it is to be gripped from elsewhere")
     return Ended(Outcome.DONE, seen.reason)
+
+
+def _anew(run: FetchRun) -> Ended | None:
+    """End with looking for the thing from here, if it should be in the picture and that was not tried too
+    often.
+    """
+    known = run.memory.known
+    is_in_picture = known is not None and pixel_of(run.context, known.place.point_in_world) is not None
+    if not (run.ways.renews_on_way and is_in_picture and run.memory.looks < MOST_LOOKS):
+        return None
+    run.remember(looks=run.memory.looks + 1)
+    return Ended(Outcome.UNSURE, f"{_known_to(run)}: located anew")
+
+
+def _is_lost(run: FetchRun, sd: float) -> bool:
+    """Tell whether the thing is not seen any more, and its place not known so well [m] either."""
+    return bool(_loss(run)) and _place_sd(run) > sd
+
+
+def _known_to(run: FetchRun) -> str:
+    return f"its place is known to ±{2000.0 * _place_sd(run):.0f} mm only"
 
 
 def _loss(run: FetchRun) -> str:

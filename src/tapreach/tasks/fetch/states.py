@@ -104,7 +104,12 @@ STATES: Mapping[Phase, State] = {
     Phase.APPROACH: State(
         "drives to where it sees the whole thing from near",
         0.4,
-        {Outcome.DONE: Phase.LAST_LOOK, Outcome.LOST: Phase.FAILED, Outcome.CANNOT: Phase.REFUSED},
+        {
+            Outcome.DONE: Phase.LAST_LOOK,
+            Outcome.UNSURE: Phase.LOOK,
+            Outcome.LOST: Phase.FAILED,
+            Outcome.CANNOT: Phase.REFUSED,
+        },
         _STANDS,
         Phase.LOOK,
     ),
