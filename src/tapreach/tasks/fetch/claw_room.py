@@ -20,8 +20,6 @@ CLEAR = 0.008
 """Way kept between the claw and the floor [m]."""
 SPARE = 0.002
 """Kept from floor and base beyond what paths of the arm keep [m]."""
-_ROUNDING = 1e-9
-"""Where the clearance is the same all along a room, rounding shall not tear it [m]."""
 LIFT = 0.06
 """What is gripped must be able to go up by this [m]."""
 
@@ -92,7 +90,7 @@ class Claw:
         lifted = self.arm.pose_at(self.tip(ahead, height + LIFT, rotation), opening)
         if isinstance(pose, Unreachable) or isinstance(lifted, Unreachable):
             return False
-        return self.arm.clearance(pose).distance >= MARGIN + SPARE - _ROUNDING
+        return self.arm.clearance(pose).distance >= MARGIN + SPARE
 
 
 @lru_cache(maxsize=512)
