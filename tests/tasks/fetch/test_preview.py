@@ -80,6 +80,16 @@ def test_thing_too_wide_over_its_corner_is_looked_at_from_another_side():
     assert abs(found.approach.side) >= math.radians(30.0)
 
 
+def test_thing_barely_too_wide_from_near_is_driven_around_where_that_is_asked_for():
+    """Its width is not sure enough to look for another side at once; seen from near it was too wide."""
+    thing = ahead(1.5, width=0.075, width_sd=0.004)
+    straight, around = (preview(thing, [], HERE, ROBOT, seeks_another_side=seeks) for seeks in (False, True))
+    assert straight.approach is not None and abs(straight.approach.side) < math.radians(30.0)
+    assert around.approach is not None and abs(around.approach.side) >= math.radians(30.0)
+    last = preview(thing, [], HERE, ROBOT, is_last_look=True, seeks_another_side=True)
+    assert last.verdict is Verdict.NO and "too wide" in last.reason
+
+
 def test_doubt_at_the_last_look_is_a_no():
     standing = ahead(0.4, -0.045, foot=0.1)
     assert preview(standing, [], HERE, ROBOT).verdict is Verdict.UNSURE

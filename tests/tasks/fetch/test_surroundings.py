@@ -37,6 +37,13 @@ def test_nothing_seen_stands_where_the_robot_or_the_thing_does(
         assert obstacle.radius <= radius
 
 
+def test_what_one_look_shows_close_by_the_thing_is_taken_for_its_shadow_until_another_shows_it() -> None:
+    middle, own = own_room(GOAL)
+    beside = float(middle[0]) - own - 0.04
+    assert around(seen_at(beside, float(middle[1]), radius=0.015, looks=1)) == []
+    assert len(around(seen_at(beside, float(middle[1]), radius=0.015, looks=2))) == 1
+
+
 def test_what_stands_apart_stays_as_it_was_seen() -> None:
     (obstacle,) = around(seen_at(0.7, -0.3))
     assert np.allclose(obstacle.centre, (0.7, -0.3))

@@ -8,9 +8,11 @@ from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch.approach import Approach, Leg
 from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.looking import in_words, measure, previewed
-from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.preview import ReachPreview
+from tapreach.tasks.fetch.reach import Verdict, may_be_narrower
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.fetch.thing import ThingSize
 from tapreach.tasks.follower import TargetLost
 
 MOST_LEGS = 10
@@ -41,7 +43,15 @@ async def approach(run: FetchRun) -> Ended:
         await measure(run)
         if _is_lost(run, LOOK_ANEW_SD) and (anew := _anew(run)):
             return anew
-    return Ended(Outcome.CANNOT, f"did not arrive before it in {MOST_LEGS} legs: the way keeps changing")
+    return Ended(Outcome.CANNOT, await _not_arrived(run))
+
+
+async def _not_arrived(run: FetchRun) -> str:
+    """Return the true reason: too wide from every side that was seen, or too many legs."""
+    size = run.thing().size
+    if isinstance(size, ThingSize) and size.width > run.claw.opens_to:
+        return in_words(await previewed(run, is_last_look=True))
+    return f"did not arrive before it in {MOST_LEGS} legs: the way keeps changing"
 
 
 async def last_look(run: FetchRun) -> Ended:
@@ -54,10 +64,18 @@ async def last_look(run: FetchRun) -> Ended:
     await measure(run)
     seen = run.preview = await previewed(run, is_last_look=True)
     if seen.verdict is Verdict.NO or seen.approach is None:
-        return Ended(Outcome.CANNOT, in_words(seen))
+        return _from_another_side(run, seen) or Ended(Outcome.CANNOT, in_words(seen))
     if next_leg(seen.approach) is not None:
         return Ended(Outcome.MISSED, "measured from near, it is to be gripped from elsewhere")
     return Ended(Outcome.DONE, seen.reason)
+
+
+def _from_another_side(run: FetchRun, seen: ReachPreview) -> Ended | None:
+    """End with driving to where it may be narrower, once."""
+    if seen.size is None or run.memory.seeks_another_side or not may_be_narrower(seen.size, run.claw):
+        return None
+    run.remember(seeks_another_side=True)
+    return Ended(Outcome.MISSED, f"{in_words(seen)}; a box may be narrower from another side")
 
 
 def _anew(run: FetchRun) -> Ended | None:

@@ -117,7 +117,12 @@ async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
     far as a way leads there.
     """
     thing, estimate = run.thing(), run.locating.estimate if run.locating is not None else None
-    plan = partial(preview, free_behind=way_behind(run.context.poses), is_last_look=is_last_look)
+    plan = partial(
+        preview,
+        free_behind=way_behind(run.context.poses),
+        is_last_look=is_last_look,
+        seeks_another_side=run.memory.seeks_another_side,
+    )
     if estimate is not None:
         await run.around.look(run.context, estimate, thing)
     seen = run.around.obstacles(run.here, thing, run.context.description)

@@ -79,13 +79,14 @@ def preview(
     *,
     free_behind: float = 0.0,
     is_last_look: bool = False,
+    seeks_another_side: bool = False,
 ) -> ReachPreview:
     """Return whether and how the robot, standing at `world_from_base`, can fetch the thing.
 
     others: what must not be touched, in the world. free_behind: how far straight back the floor is known to
     be free [m]. is_last_look: the thing will not be measured better: widths count as they are, and what
-    cannot be told then is a no. Raises InputError for values that are not finite, and for what is no
-    covariance.
+    cannot be told then is a no. seeks_another_side: it was too wide from where it was looked at last. Raises
+    InputError for values that are not finite, and for what is no covariance.
     """
     finite_array("point_in_world", thing.point_in_world, (3,))
     require_covariance("point_cov_in_world", thing.point_cov_in_world, 3)
@@ -93,7 +94,10 @@ def preview(
     if isinstance(thing.size, NoSize):
         found = _unmeasured(thing, thing.size, others, world_from_base, body, free_behind)
     else:
-        found = _measured(thing, thing.size, others, world_from_base, body, free_behind, is_last_look)
+        finite_array("axis_in_world", thing.size.axis_in_world, (3,))
+        require_covariance("axis_cov_in_world", thing.size.axis_cov_in_world, 3)
+        judged = judge(thing.size, body.claw, is_last_look, seeks_another_side)
+        found = _measured(thing, thing.size, judged, others, world_from_base, body, free_behind, is_last_look)
     if is_last_look and found.verdict is Verdict.UNSURE:
         return replace(found, verdict=Verdict.NO)
     return found
@@ -133,15 +137,13 @@ def _unmeasured(
 def _measured(
     thing: Thing,
     size: ThingSize,
+    judged: Judgement,
     others: Sequence[Obstacle],
     world_from_base: PlanarPose,
     body: Body,
     free_behind: float,
     is_last_look: bool,
 ) -> ReachPreview:
-    finite_array("axis_in_world", size.axis_in_world, (3,))
-    require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
-    judged = judge(size, body.claw, is_last_look)
     if judged.verdict is not Verdict.YES:
         judged = _too_high(thing, body) or judged
     if judged.grip is None and not judged.from_another_side:

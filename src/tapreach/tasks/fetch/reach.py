@@ -65,14 +65,19 @@ class Judgement:
     """It is too wide as seen from here alone: only another side can help."""
 
 
-def judge(size: ThingSize, claw: Claw, is_last_look: bool = False) -> Judgement:
+def judge(
+    size: ThingSize, claw: Claw, is_last_look: bool = False, seeks_another_side: bool = False
+) -> Judgement:
     """Return whether a thing of this size can be gripped.
 
     is_last_look: it will not be measured better; what the widths themselves say then counts, and a side from
-    which it is narrower is not looked for.
+    which it is narrower is not looked for. seeks_another_side: the width counts as it is too, and such a side
+    is looked for.
     """
     grip = grip_for(size, claw)
-    refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, is_last_look)
+    is_final = is_last_look or seeks_another_side
+    least = size.width if is_final else size.width - SURE * size.width_sd
+    refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, least, is_last_look)
     if refused is not None:
         return refused
     if grip is None and size.width > claw.opens_to:
@@ -151,9 +156,13 @@ def _too_flat(size: ThingSize, claw: Claw) -> Judgement | None:
     return Judgement(Verdict.UNSURE, f"may be {words}", nearer, None)
 
 
-def _too_wide(size: ThingSize, claw: Claw, is_last_look: bool) -> Judgement | None:
+def may_be_narrower(size: ThingSize, claw: Claw) -> bool:
+    """Tell whether what is too wide may be a box seen over its corner, and fit the claw from elsewhere."""
+    return claw.opens_to < size.width <= OVER_CORNER * (claw.opens_to - CLAW_SPARE)
+
+
+def _too_wide(size: ThingSize, claw: Claw, least: float, is_last_look: bool) -> Judgement | None:
     opens = claw.opens_to
-    least = size.width if is_last_look else size.width - SURE * size.width_sd
     if least > OVER_CORNER * (opens - CLAW_SPARE) or (is_last_look and size.width > opens):
         return _no(_wider_by(size, claw), "")
     if least > opens:

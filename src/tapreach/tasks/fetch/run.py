@@ -122,7 +122,7 @@ class FetchRun:
         """
         if isinstance(size, ThingSize):
             self.axis_offset = np.asarray(size.axis_in_world - point_in_world)
-            self.size = with_earlier(size, self.earlier_size, self._sight_along(size))
+            self.size = self.sized_along(with_earlier(size, self.earlier_size, self._sight_along(size)))
         elif isinstance(self.size, NoSize):
             self.size = size
 

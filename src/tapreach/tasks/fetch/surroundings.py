@@ -19,6 +19,8 @@ from tapreach.tasks.task import TaskContext
 _CLEAR_OF_ROBOT = 0.005
 """What was seen is so far from where the robot stands [m] at least, or it would not stand there."""
 _LEAST_RADIUS = 0.01
+_BY_THE_THING = 0.05
+"""What one look alone shows so near the thing [m] may be its shadow, or its gleam on the floor."""
 
 
 @dataclass
@@ -57,7 +59,8 @@ class SeenAround:
         for each in self.known:
             there = each.in_world(self.poses or {})
             beside = _beside(there, float(Surroundings.of([there]).clearances(outline)[0]))
-            if beside is not None and not there.may_be_at(middle, radius - there.spread):
+            own = radius if each.is_sure else radius + _BY_THE_THING
+            if beside is not None and not there.may_be_at(middle, own - there.spread):
                 found.append(Seen(beside, each.is_sure))
         return found
 
