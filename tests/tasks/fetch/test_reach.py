@@ -1,5 +1,7 @@
 """Whether a thing can be gripped: margins by what is not known, and refusals by name."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -89,6 +91,15 @@ def test_last_look_decides_by_the_width_itself():
     assert judge(doubtful, CLAW, is_last_look=True).verdict is Verdict.YES
     too_wide = size_at(1.0, 0.0, width=0.075, width_sd=0.004)
     assert judge(too_wide, CLAW, is_last_look=True).verdict is Verdict.NO
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.02, 0.3), st.floats(0.0, 0.03), st.floats(0.0, 0.5), st.booleans())
+def test_what_has_no_upper_end_is_never_gripped(width, width_sd, foot, is_last_look):
+    size = size_at(1.0, 0.0, width=width, width_sd=width_sd, height=0.34, foot=foot)
+    ends, goes_on = (judge(replace(size, goes_on_above=each), CLAW, is_last_look) for each in (False, True))
+    assert goes_on.verdict is Verdict.NO
+    assert ends.reason == goes_on.reason if ends.verdict is Verdict.NO else "on a wall" in goes_on.reason
 
 
 def test_room_ends_where_the_arm_ends():

@@ -78,6 +78,8 @@ def judge(
     is_final = is_last_look or seeks_another_side
     least = size.width if is_final else size.width - SURE * size.width_sd
     refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, least, is_last_look)
+    if size.goes_on_above and (refused is None or refused.verdict is Verdict.UNSURE):
+        return _no(_endless(size), "draw a box around it if it does end there")
     if refused is not None:
         return refused
     if grip is None and size.width > claw.opens_to:
@@ -175,6 +177,12 @@ def _too_wide(size: ThingSize, claw: Claw, least: float, is_last_look: bool) -> 
             from_another_side=True,
         )
     return None
+
+
+def _endless(size: ThingSize) -> str:
+    up_to = _mm(size.foot + size.height)
+    larger = "part of something larger, as a picture on a wall is, or stands on something"
+    return f"it goes on above {up_to}: {larger}"
 
 
 def _wider_by(size: ThingSize, claw: Claw) -> str:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from tapreach.errors import FrameError
-from tapreach.estimation.thing_size import FusedSize, agreeing, fused, silhouette_of_box
+from tapreach.estimation.thing_size import FusedSize, Silhouette, agreeing, fused, silhouette_of_box
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel_box import PixelBox
 from tapreach.robot.config import RobotDescription
@@ -94,11 +94,16 @@ def thing_size(
         seen.append(found)
         pair = agreeing([each.silhouette for each in seen if each.cut.is_bounded])
         if pair:
-            return _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE])
+            told = _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE])
+            return replace(told, goes_on_above=all(each.goes_on_above for each in _of(pair, seen)))
     wide = [each.silhouette for each in seen if each.silhouette.width > _TOLD]
     if wide and len(wide) == len(seen):
         return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE, AT_LEAST])
     return NoSize(_why_not(seen))
+
+
+def _of(pair: Sequence[Silhouette], seen: Sequence[Seen]) -> list[Seen]:
+    return [each for each in seen if any(each.silhouette is one for one in pair)]
 
 
 def _told(size: FusedSize, words: list[str]) -> ThingSize:

@@ -13,7 +13,7 @@ class ThingSize:
     point above the floor [m]. axis_in_world (3,): its middle, half a depth behind its front, at half its
     height [m]; axis_cov_in_world (3, 3) [m²]. caveat: what to know of it, '' for nothing. seen_along:
     direction in the world of the line of sight across which the width was measured [rad]; None stands for
-    that from where the base is.
+    that from where the base is. goes_on_above: its upper end was not found; `height` is as far as was looked.
     """
 
     width: float
@@ -25,6 +25,7 @@ class ThingSize:
     axis_cov_in_world: FloatArray
     caveat: str = ""
     seen_along: float | None = None
+    goes_on_above: bool = False
 
 
 @dataclass(frozen=True)

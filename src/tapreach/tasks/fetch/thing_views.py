@@ -53,6 +53,11 @@ class Seen:
     silhouette: Silhouette
     cut: CutOut
 
+    @property
+    def goes_on_above(self) -> bool:
+        """True where the outline has no upper end on the raster."""
+        return self.cut.outline.top == 0
+
 
 def views_of(
     sightings: Sequence[Sighting],
