@@ -29,6 +29,8 @@ def fits(ahead: float, height: float, opening: float, rotation: float) -> bool:
     ("size", "verdict", "reason", "advice"),
     [
         ({"width": 0.101, "width_sd": 0.001}, "no", "28 mm too wide for the claw: it is 101 mm wide", ""),
+        ({"width": 0.105, "width_sd": 0.006}, "no", "32 mm too wide for the claw: it is 105 mm wide", ""),
+        ({"width": 0.102, "width_sd": 0.006}, "unsure", "29 mm too wide for the claw as", "another side"),
         ({"width": 0.25, "width_sd": 0.12}, "no", "177 mm too wide for the claw: it is 250 mm wide", ""),
         ({"width": 0.085}, "unsure", "12 mm too wide for the claw as seen from here", "from another side"),
         (

@@ -165,7 +165,9 @@ def may_be_narrower(size: ThingSize, claw: Claw) -> bool:
 
 def _too_wide(size: ThingSize, claw: Claw, least: float, is_last_look: bool) -> Judgement | None:
     opens = claw.opens_to
-    if least > OVER_CORNER * (opens - CLAW_SPARE) or (is_last_look and size.width > opens):
+    # Hardly any box that fits is seen so wide, over its very corner: here one sigma is enough.
+    is_no_corner = max(least, size.width - size.width_sd) > OVER_CORNER * (opens - CLAW_SPARE)
+    if (least > opens and is_no_corner) or (is_last_look and size.width > opens):
         return _no(_wider_by(size, claw), "")
     if least > opens:
         side = "look at it from another side: a box is narrower there than over its corner"
