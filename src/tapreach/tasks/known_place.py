@@ -47,6 +47,10 @@ class KnownPlace:
         added = by_way(self.known_at, here, self.point_in_world, description)
         return KnownPlace(self.point_in_world, self.cov_in_world + added, here)
 
+    def less_sure(self, times: float) -> "KnownPlace":
+        """Return it with sigmas so many times as large."""
+        return replace(self, cov_in_world=times**2 * self.cov_in_world)
+
     def perhaps_moved(self, across_sd: float, up_sd: float) -> "KnownPlace":
         """Return it after something may have moved it on the floor and up or down, one sigma each [m]."""
         added = np.diag(np.square([across_sd, across_sd, up_sd]))

@@ -120,14 +120,18 @@ class Locating:
     async def run(self) -> str:
         """Locate and return the closing sentence. Raises as LocateTask.run."""
         self._say("look", 0.0, "looking at the tapped place")
-        self._stops.append(await self._follower.open())
-        self._show()
-        await self._follower.catch_up()
-        await self._renew_if_known()
+        await self.begin()
         end = await (self._make_fixed() if self._is_fixed else self._refine())
         await self._renew(with_advice=end not in (End.REACHED, End.LOST))
         await self._measure()
         return self._conclusion(end)
+
+    async def begin(self) -> None:
+        """Begin to follow, without a move. Raises as LocateTask.run."""
+        self._stops.append(await self._follower.open())
+        self._show()
+        await self._follower.catch_up()
+        await self._renew_if_known()
 
     async def recall(self, known: KnownPlace | None) -> None:
         """Make use of where the tapped place was by an earlier look, from now on; None: of nothing."""

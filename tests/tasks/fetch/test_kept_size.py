@@ -7,7 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tapreach.tasks.fetch.kept_size import with_earlier
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.tasks.fetch.kept_size import SizeDoubt, contradicts, with_earlier
+from tapreach.tasks.fetch.thing import NoSize
 from tasks.fetch.worlds import size_at
 
 widths = st.floats(0.03, 0.07)
@@ -40,3 +42,42 @@ def test_size_of_something_else_does_not_count() -> None:
     new, other = size_at(0.5, 0.0, 0.04), replace(size_at(0.5, 0.0, 0.06), seen_along=0.0)
     assert with_earlier(new, other, 0.0) is new
     assert with_earlier(new, None, 0.0) is new
+
+
+@given(widths, sds, st.floats(-2.9, 2.9))
+def test_sizes_that_differ_by_chance_do_not_contradict(width: float, sd: float, sigmas: float) -> None:
+    current = replace(size_at(0.5, 0.0, width, width_sd=sd), seen_along=0.1)
+    new = size_at(0.5, 0.0, width + sigmas * math.sqrt(2.0) * sd, width_sd=sd)
+    assert not contradicts(new, current, 0.0)
+
+
+def test_what_takes_in_the_crate_behind_contradicts_unless_it_is_seen_from_another_side() -> None:
+    cup = replace(size_at(0.5, 0.0, 0.06, 0.08), seen_along=0.0)
+    both = size_at(0.5, 0.0, 0.3, 0.34)
+    assert contradicts(both, cup, 0.0)
+    assert not contradicts(both, cup, math.radians(40.0))
+
+
+def test_size_against_the_known_one_is_believed_when_it_is_measured_again_from_elsewhere() -> None:
+    cup = replace(size_at(0.5, 0.0, 0.06, 0.08), seen_along=0.0)
+    both, doubt = size_at(0.5, 0.0, 0.3, 0.34), SizeDoubt()
+    assert doubt.believed(both, cup, PlanarPose(), 0.0) is None
+    assert doubt.believed(both, cup, PlanarPose(0.02), 0.0) is None
+    assert doubt.believed(both, cup, PlanarPose(0.3), 0.0) is both
+
+
+def test_size_that_agrees_again_ends_the_doubt() -> None:
+    cup = replace(size_at(0.5, 0.0, 0.06, 0.08), seen_along=0.0)
+    both, doubt = size_at(0.5, 0.0, 0.3, 0.34), SizeDoubt()
+    doubt.believed(both, cup, PlanarPose(), 0.0)
+    assert doubt.believed(cup, cup, PlanarPose(0.2), 0.0) is cup
+    assert doubt.believed(both, cup, PlanarPose(0.4), 0.0) is None
+
+
+def test_single_views_count_when_two_from_different_places_tell_the_same() -> None:
+    unknown, doubt = NoSize("not measured"), SizeDoubt()
+    alone, same, other = (NoSize("one view", size_at(0.5, 0.0, width)) for width in (0.05, 0.051, 0.3))
+    assert doubt.believed(alone, unknown, PlanarPose(), 0.0) is None
+    assert doubt.believed(other, unknown, PlanarPose(0.2), 0.0) is None
+    assert doubt.believed(alone, unknown, PlanarPose(0.4), 0.0) is None
+    assert doubt.believed(same, unknown, PlanarPose(0.6), 0.0) is same.by_one_view

@@ -90,6 +90,20 @@ def test_thing_barely_too_wide_from_near_is_driven_around_where_that_is_asked_fo
     assert last.verdict is Verdict.NO and "too wide" in last.reason
 
 
+def test_outline_too_wide_is_looked_at_from_near_before_it_is_believed():
+    """A crate that stands close behind a cup passes for part of it from far away; a drawn box is believed."""
+    far, near = (ahead(distance, width=0.2) for distance in (1.5, 0.6))
+    found = [preview(by_picture(thing), [], HERE, ROBOT) for thing in (far, near)]
+    assert [each.verdict for each in found] == [Verdict.UNSURE, Verdict.NO]
+    assert "200 mm wide" in found[0].reason and found[0].approach is not None
+    assert preview(far, [], HERE, ROBOT).verdict is Verdict.NO
+    assert preview(by_picture(far), [], HERE, ROBOT, is_last_look=True).verdict is Verdict.NO
+
+
+def by_picture(thing):
+    return replace(thing, size=replace(thing.size, by_picture=True))
+
+
 def test_doubt_at_the_last_look_is_a_no():
     standing = ahead(0.4, -0.045, foot=0.1)
     assert preview(standing, [], HERE, ROBOT).verdict is Verdict.UNSURE

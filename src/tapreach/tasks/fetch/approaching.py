@@ -6,8 +6,9 @@ import numpy as np
 
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch.approach import Approach, Leg
+from tapreach.tasks.fetch.followed_from_here import follow_from_here, has_grown
 from tapreach.tasks.fetch.known_target import pixel_of
-from tapreach.tasks.fetch.looking import in_words, measure, previewed
+from tapreach.tasks.fetch.looking import ACCURACY, MOST_LOOKS, in_words, measure, previewed
 from tapreach.tasks.fetch.preview import ReachPreview
 from tapreach.tasks.fetch.reach import Verdict, may_be_narrower
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -20,7 +21,6 @@ BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
 LOOK_ANEW_SD = 0.02
 """A thing in sight whose place is known worse [m], one sigma, is located anew from near."""
-MOST_LOOKS = 3
 LONGEST_LEG = 0.4
 """Farther than this the thing is not driven towards without planning anew [m]."""
 NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.03, math.radians(3.0)
@@ -43,6 +43,8 @@ async def approach(run: FetchRun) -> Ended:
         await measure(run)
         if _is_lost(run, LOOK_ANEW_SD) and (anew := _anew(run)):
             return anew
+        if run.ways.renews_on_way and has_grown(run):
+            await follow_from_here(run, ACCURACY)
     return Ended(Outcome.CANNOT, await _not_arrived(run))
 
 

@@ -1,14 +1,57 @@
-"""A size measured in an earlier look together with that of a new one."""
+"""Sizes measured one after the other: what is believed of them, and what earlier ones add to a new one."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from tapreach.geometry.planar_motion import wrapped
-from tapreach.tasks.fetch.thing import ThingSize
+from tapreach.geometry.planar_motion import PlanarPose, wrapped
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tapreach.tasks.sighting import is_apart
 
 _SAME_SIGMAS = 3.0
+_ELSEWHERE = 0.05, math.radians(5.0)
+"""A size measured again after so much of a way [m], [rad] rests on other pictures."""
 _SAME_SIDE = math.radians(15.0)
 """A thing seen from farther aside than this shows another width."""
+
+
+@dataclass
+class SizeDoubt:
+    """What was measured and not believed yet, each with where the base stood: a size `against` the one that
+    is known, and one told by a single view, `alone`. Both are believed once another from elsewhere agrees.
+    """
+
+    against: tuple[ThingSize, PlanarPose] | None = None
+    alone: tuple[ThingSize, PlanarPose] | None = None
+
+    def believed(
+        self, new: ThingSize | NoSize, current: ThingSize | NoSize, here: PlanarPose, seen_along: float
+    ) -> ThingSize | None:
+        """Return the size that a new measurement makes known; None where it changes nothing.
+
+        seen_along: the new line of sight's direction in the world [rad].
+        """
+        if isinstance(new, NoSize):
+            return self._told_twice(new.by_one_view, here)
+        if isinstance(current, NoSize) or not contradicts(new, current, seen_along):
+            self.against = None
+            return new
+        before, self.against = _newest(self.against, new, here)
+        return new if before is not None and not contradicts(new, before, seen_along) else None
+
+    def _told_twice(self, new: ThingSize | None, here: PlanarPose) -> ThingSize | None:
+        if new is None:
+            return None
+        before, self.alone = _newest(self.alone, new, here)
+        return new if before is not None and agree(new, before) else None
+
+
+def _newest(
+    before: tuple[ThingSize, PlanarPose] | None, new: ThingSize, here: PlanarPose
+) -> tuple[ThingSize | None, tuple[ThingSize, PlanarPose]]:
+    """Return what was measured before from elsewhere, and what is to be kept."""
+    if before is not None and not is_apart(before[1], here, *_ELSEWHERE):
+        return None, before
+    return (None if before is None else before[0]), (new, here)
 
 
 def with_earlier(new: ThingSize, earlier: ThingSize | None, seen_along: float) -> ThingSize:
@@ -17,7 +60,7 @@ def with_earlier(new: ThingSize, earlier: ThingSize | None, seen_along: float) -
     seen_along: the new line of sight's direction in the world [rad]. The errors of both are taken to be the
     same error, as they come of one method: the mean is no surer than the better of the two.
     """
-    if earlier is None or earlier.seen_along is None or not _agree(new, earlier):
+    if earlier is None or earlier.seen_along is None or not agree(new, earlier):
         return new
     height, height_sd = _mean(new.height, new.height_sd, earlier.height, earlier.height_sd)
     if abs(wrapped(seen_along - earlier.seen_along)) > _SAME_SIDE:
@@ -26,7 +69,17 @@ def with_earlier(new: ThingSize, earlier: ThingSize | None, seen_along: float) -
     return replace(new, width=width, width_sd=width_sd, height=height, height_sd=height_sd)
 
 
-def _agree(new: ThingSize, earlier: ThingSize) -> bool:
+def contradicts(new: ThingSize, current: ThingSize, seen_along: float) -> bool:
+    """Tell whether a new size differs by more than chance from the current one, of the same side.
+
+    seen_along: as above. What stands close behind or beside the thing now and then passes for part of it.
+    """
+    is_same_side = current.seen_along is None or abs(wrapped(seen_along - current.seen_along)) <= _SAME_SIDE
+    return is_same_side and not agree(new, current)
+
+
+def agree(new: ThingSize, earlier: ThingSize) -> bool:
+    """Tell whether two sizes may be of one thing seen from one side."""
     by_width = abs(new.width - earlier.width) / math.hypot(new.width_sd, earlier.width_sd)
     by_height = abs(new.height - earlier.height) / math.hypot(new.height_sd, earlier.height_sd)
     return max(by_width, by_height) <= _SAME_SIGMAS and new.foot == earlier.foot

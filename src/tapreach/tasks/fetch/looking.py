@@ -35,14 +35,32 @@ from tapreach.tasks.task import Tap
 
 ACCURACY = 0.02
 """Relative error of the range, one sigma, at which driving up begins: it is estimated on on the way."""
+MOST_LOOKS = 3
+_HARDLY_KNOWN = 0.1
+"""A relative error of the range, one sigma, beyond which it is not driven up to what is not seen."""
 GRASPING_SECONDS = 20.0
 """What looking at the claw, reaching, gripping and lifting take."""
 
 
 async def look(run: FetchRun) -> Ended:
-    """Locate the thing and measure it, unless it is too high by its line of sight alone. Raises as
-    LocateTask.run.
+    """Locate the thing and measure it, unless it is too high by its line of sight alone; what was lost before
+    much was known of its place is looked for once more. Raises as LocateTask.run.
     """
+    ended = await _look_once(run)
+    if ended.outcome is not Outcome.DONE or not _was_lost_early(run) or await tap_again(run) is None:
+        return ended
+    run.remember(looks=run.memory.looks + 1)
+    return await _look_once(run)
+
+
+def _was_lost_early(run: FetchRun) -> bool:
+    locating = run.locating
+    if locating is None or locating.estimate is None or run.memory.looks >= MOST_LOOKS:
+        return False
+    return bool(locating.follower.loss) and locating.estimate.relative_sd > _HARDLY_KNOWN
+
+
+async def _look_once(run: FetchRun) -> Ended:
     tap = await _tap(run)
     if tap is None:
         return Ended(
@@ -93,11 +111,15 @@ def _not_located(ended: Ended, within: float, estimate: PointEstimate | None) ->
 
 
 async def measure(run: FetchRun) -> None:
-    """Measure the thing in the pictures that have been taken, and remember where it is."""
-    locating = run.locating
+    """Measure the thing in the pictures that have been taken, and remember where it is. Pictures since it
+    went out of sight say nothing new.
+    """
+    locating, tap = run.locating, run.memory.tap
     point = run.thing().point_in_world
-    if locating is not None and locating.estimate is not None:
-        run.measured(await size_of(run.context, locating.estimate, run.memory.tap.box), point)
+    if locating is not None and locating.estimate is not None and not locating.follower.loss:
+        is_drawn_in = locating.estimate.sightings[0].frame_id == tap.frame_id
+        size = await size_of(run.context, locating.estimate, tap.box if is_drawn_in else None)
+        run.measured(size, point)
     keep_what_is_known(run)
 
 

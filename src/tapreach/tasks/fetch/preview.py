@@ -17,7 +17,7 @@ from tapreach.tasks.fetch.approach import Approach, NoWay
 from tapreach.tasks.fetch.approach_plan import plan_approach
 from tapreach.tasks.fetch.body import Body
 from tapreach.tasks.fetch.obstacle import Obstacle, out_of
-from tapreach.tasks.fetch.reach import Judgement, Verdict, judge
+from tapreach.tasks.fetch.reach import OFF_FLOOR, Judgement, Verdict, judge
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tapreach.tasks.fetch.too_high import refused_by_place
 
@@ -25,6 +25,8 @@ SUPPOSED_WIDTH, SUPPOSED_HEIGHT = 0.06, 0.10
 """What is approached to be measured is supposed to be so large [m]."""
 SIDE_DEPTH = 0.4
 """One sigma of how much deeper or less deep than wide a thing is, as a share of its width."""
+WIDTH_TOLD_WITHIN = 0.9
+"""What is too wide by its outline in pictures from farther away [m] is looked at from near first."""
 _PLACE_SHARE = 0.25
 """A place known worse than this share of its distance (two sigmas) is not driven up to as it is."""
 _SURE = 2.0
@@ -91,16 +93,33 @@ def preview(
     finite_array("point_in_world", thing.point_in_world, (3,))
     require_covariance("point_cov_in_world", thing.point_cov_in_world, 3)
     body = Body.of(description)
-    if isinstance(thing.size, NoSize):
-        found = _unmeasured(thing, thing.size, others, world_from_base, body, free_behind)
+    size = thing.size if is_last_look else _believed(thing.size, world_from_base, body)
+    if isinstance(size, NoSize):
+        found = _unmeasured(thing, size, others, world_from_base, body, free_behind)
     else:
-        finite_array("axis_in_world", thing.size.axis_in_world, (3,))
-        require_covariance("axis_cov_in_world", thing.size.axis_cov_in_world, 3)
-        judged = judge(thing.size, body.claw, is_last_look, seeks_another_side)
-        found = _measured(thing, thing.size, judged, others, world_from_base, body, free_behind, is_last_look)
+        finite_array("axis_in_world", size.axis_in_world, (3,))
+        require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
+        judged = judge(size, body.claw, is_last_look, seeks_another_side)
+        found = _measured(thing, size, judged, others, world_from_base, body, free_behind, is_last_look)
     if is_last_look and found.verdict is Verdict.UNSURE:
         return replace(found, verdict=Verdict.NO)
     return found
+
+
+def _believed(size: ThingSize | NoSize, world_from_base: PlanarPose, body: Body) -> ThingSize | NoSize:
+    """Return the size, or why it is not believed: from far what stands close to the thing may pass for part
+    of it, and make it too wide.
+    """
+    if isinstance(size, NoSize) or not size.by_picture:
+        return size
+    stands_on = size.goes_on_above and size.foot <= OFF_FLOOR
+    if size.width <= body.claw.opens_to and not stands_on:
+        return size
+    off = np.asarray(size.axis_in_world)[:2] - [world_from_base.x, world_from_base.y]
+    if float(np.hypot(*off)) <= WIDTH_TOLD_WITHIN:
+        return size
+    looks = f"{1000.0 * size.width:.0f} mm wide and {1000.0 * size.height:.0f} mm high"
+    return NoSize(f"it looks {looks} from here; what stands close to it may pass for part of it")
 
 
 def supposed_size(thing: Thing, world_from_base: PlanarPose) -> ThingSize:

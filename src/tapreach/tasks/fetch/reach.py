@@ -75,9 +75,8 @@ def judge(
     is looked for.
     """
     grip = grip_for(size, claw)
-    is_final = is_last_look or seeks_another_side
-    least = size.width if is_final else size.width - SURE * size.width_sd
-    refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, least, is_last_look)
+    seeks = seeks_another_side and may_be_narrower(size, claw)
+    refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, is_last_look, seeks)
     if size.goes_on_above and (refused is None or refused.verdict is Verdict.UNSURE):
         return _no(_endless(size), "draw a box around it if it does end there")
     if refused is not None:
@@ -159,26 +158,28 @@ def _too_flat(size: ThingSize, claw: Claw) -> Judgement | None:
 
 
 def may_be_narrower(size: ThingSize, claw: Claw) -> bool:
-    """Tell whether what is too wide may be a box seen over its corner, and fit the claw from elsewhere."""
-    return claw.opens_to < size.width <= OVER_CORNER * (claw.opens_to - CLAW_SPARE)
+    """Tell whether what is too wide may fit the claw from elsewhere: a box that is seen over its corner, or
+    what was measured together with something behind it.
+    """
+    least = size.width - SURE * size.width_sd
+    return size.width > claw.opens_to >= least or _may_be_a_corner(size.width, claw)
 
 
-def _too_wide(size: ThingSize, claw: Claw, least: float, is_last_look: bool) -> Judgement | None:
-    opens = claw.opens_to
+def _may_be_a_corner(width: float, claw: Claw) -> bool:
+    return claw.opens_to < width <= OVER_CORNER * (claw.opens_to - CLAW_SPARE)
+
+
+def _too_wide(size: ThingSize, claw: Claw, is_last_look: bool, seeks: bool) -> Judgement | None:
+    opens, least = claw.opens_to, size.width - SURE * size.width_sd
+    if is_last_look:
+        return _no(_wider_by(size, claw), "") if size.width > opens else None
     # Hardly any box that fits is seen so wide, over its very corner: here one sigma is enough.
-    is_no_corner = max(least, size.width - size.width_sd) > OVER_CORNER * (opens - CLAW_SPARE)
-    if (least > opens and is_no_corner) or (is_last_look and size.width > opens):
-        return _no(_wider_by(size, claw), "")
-    if least > opens:
+    may_fit = _may_be_a_corner(least, claw) and _may_be_a_corner(size.width - size.width_sd, claw)
+    if seeks or may_fit:
         side = "look at it from another side: a box is narrower there than over its corner"
-        return Judgement(
-            Verdict.UNSURE,
-            f"{_mm(size.width - opens)} too wide for the claw as seen from here",
-            side,
-            grip_for(size, claw),
-            from_another_side=True,
-        )
-    return None
+        words = f"{_mm(size.width - opens)} too wide for the claw as seen from here"
+        return Judgement(Verdict.UNSURE, words, side, grip_for(size, claw), from_another_side=True)
+    return _no(_wider_by(size, claw), "") if least > opens else None
 
 
 def _endless(size: ThingSize) -> str:

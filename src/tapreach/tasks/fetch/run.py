@@ -12,7 +12,7 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.fetch.arm_watch import ArmWatch
 from tapreach.tasks.fetch.arm_workspace import ArmWorkspace
 from tapreach.tasks.fetch.claw_room import Claw
-from tapreach.tasks.fetch.kept_size import with_earlier
+from tapreach.tasks.fetch.kept_size import SizeDoubt, with_earlier
 from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.preview import ReachPreview
@@ -42,7 +42,8 @@ class FetchRun:
     """One fetch on its way. Everything in the world of the present odometry.
 
     size: as last measured, its axis given by its offset (3,) [m] from the tapped place. earlier_size: as the
-    looks before this one told it.
+    looks before this one told it. size_doubt: of what was measured
+    against it.
     """
 
     context: TaskContext
@@ -54,6 +55,7 @@ class FetchRun:
     size: ThingSize | NoSize = field(default_factory=lambda: NoSize("it has not been measured yet"))
     axis_offset: FloatArray | None = None
     earlier_size: ThingSize | None = None
+    size_doubt: SizeDoubt = field(default_factory=SizeDoubt)
     preview: ReachPreview | None = None
     around: SeenAround = field(default_factory=SeenAround)
 
@@ -118,19 +120,23 @@ class FetchRun:
 
     def measured(self, size: ThingSize | NoSize, point_in_world: FloatArray) -> None:
         """Take a new size, measured with the tapped place at `point_in_world`; one that cannot be told does
-        not replace one that is known.
+        not replace one that is known, nor does one that differs much, until another from elsewhere agrees.
         """
-        if isinstance(size, ThingSize):
-            self.axis_offset = np.asarray(size.axis_in_world - point_in_world)
-            self.size = self.sized_along(with_earlier(size, self.earlier_size, self._sight_along(size)))
-        elif isinstance(self.size, NoSize):
+        believed = self.size_doubt.believed(size, self.size, self.here, self._sight_along(size))
+        if believed is not None:
+            self.axis_offset = np.asarray(believed.axis_in_world - point_in_world)
+            along = self._sight_along(believed)
+            self.size = self.sized_along(with_earlier(believed, self.earlier_size, along))
+        elif isinstance(self.size, NoSize) and isinstance(size, NoSize):
             self.size = size
 
     def sized_along(self, size: ThingSize) -> ThingSize:
         """Return a size with the direction of the sight across which it was measured, for later looks."""
         return size if size.seen_along is not None else replace(size, seen_along=self._sight_along(size))
 
-    def _sight_along(self, size: ThingSize) -> float:
+    def _sight_along(self, size: ThingSize | NoSize) -> float:
+        if isinstance(size, NoSize):
+            return self.here.heading
         return math.atan2(size.axis_in_world[1] - self.here.y, size.axis_in_world[0] - self.here.x)
 
     def remember(self, **changes: object) -> None:

@@ -99,7 +99,11 @@ def thing_size(
     wide = [each.silhouette for each in seen if each.silhouette.width > _TOLD]
     if wide and len(wide) == len(seen):
         return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE, AT_LEAST])
-    return NoSize(_why_not(seen))
+    whole = [each.silhouette for each in seen if each.cut.is_bounded and not each.goes_on_above][:1]
+    alone = (
+        _told(fused(whole, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE]) if whole else None
+    )
+    return NoSize(_why_not(seen), alone)
 
 
 def _of(pair: Sequence[Silhouette], seen: Sequence[Seen]) -> list[Seen]:
@@ -118,6 +122,7 @@ def _told(size: FusedSize, words: list[str]) -> ThingSize:
         size.axis_in_world,
         size.axis_cov_in_world,
         ", ".join(filter(None, words)),
+        by_picture=BY_PICTURE in words,
     )
 
 

@@ -19,6 +19,8 @@ from tapreach.tasks.task import TaskContext
 _CLEAR_OF_ROBOT = 0.005
 """What was seen is so far from where the robot stands [m] at least, or it would not stand there."""
 _LEAST_RADIUS = 0.01
+_FEWEST_VIEWS = 3
+"""Fewer show nothing, and deny nothing."""
 _BY_THE_THING = 0.05
 """What one look alone shows so near the thing [m] may be its shadow, or its gleam on the floor."""
 
@@ -37,7 +39,7 @@ class SeenAround:
     async def look(self, context: TaskContext, located: LocatedPoint, thing: Thing) -> None:
         """Take what the pictures of the sightings show; those that were looked at before say nothing new."""
         frame_id = located.sightings[-1].frame_id
-        if frame_id == self.newest:
+        if frame_id == self.newest or len(located.sightings) < _FEWEST_VIEWS:
             return
         self.newest = frame_id
         self.poses = {each.frame_id: each.world_from_base for each in located.sightings}

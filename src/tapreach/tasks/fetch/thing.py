@@ -14,6 +14,7 @@ class ThingSize:
     height [m]; axis_cov_in_world (3, 3) [m²]. caveat: what to know of it, '' for nothing. seen_along:
     direction in the world of the line of sight across which the width was measured [rad]; None stands for
     that from where the base is. goes_on_above: its upper end was not found; `height` is as far as was looked.
+    by_picture: the outline was found, not drawn by somebody.
     """
 
     width: float
@@ -25,14 +26,20 @@ class ThingSize:
     axis_cov_in_world: FloatArray
     caveat: str = ""
     seen_along: float | None = None
+    by_picture: bool = False
     goes_on_above: bool = False
 
 
 @dataclass(frozen=True)
 class NoSize:
-    """Why the size cannot be told, in words a person can act on."""
+    """Why the size cannot be told, in words a person can act on.
+
+    by_one_view: what the view from nearest tells of it, where that is an outline with both sides; one alone
+    is often wrong.
+    """
 
     reason: str
+    by_one_view: ThingSize | None = None
 
 
 @dataclass(frozen=True)
