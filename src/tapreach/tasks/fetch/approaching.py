@@ -14,6 +14,7 @@ from tapreach.tasks.fetch.reach import Verdict, may_be_narrower
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import ThingSize
+from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import TargetLost
 
 MOST_LEGS = 10
@@ -61,6 +62,8 @@ async def last_look(run: FetchRun) -> Ended:
     is_lost = _is_lost(run, BLIND_SD)
     if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := _anew(run)):
         return anew
+    if is_lost and (doubtful := refused_unseen(run.thing(), run.claw, _loss(run))):
+        return Ended(Outcome.CANNOT, doubtful)
     if is_lost:
         return Ended(Outcome.LOST, f"lost the thing, {_known_to(run)}: {_loss(run)}")
     await measure(run)

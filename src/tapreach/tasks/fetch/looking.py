@@ -26,6 +26,7 @@ from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.surroundings import to_plan_round
 from tapreach.tasks.fetch.thing import NoSize
 from tapreach.tasks.fetch.too_high import refused_by_sight, refused_unlocated, tap_within_reach_up_to
+from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate import Locating
@@ -128,6 +129,9 @@ async def judge_reach(run: FetchRun) -> Ended:
     run.preview = seen = await previewed(run)
     if seen.verdict is Verdict.NO:
         return Ended(Outcome.CANNOT, in_words(seen))
+    loss = run.locating.follower.loss if run.locating is not None else ""
+    if doubtful := refused_unseen(run.thing(), run.claw, loss):
+        return Ended(Outcome.CANNOT, doubtful)
     if run.memory.mode is Mode.PLAN:
         return Ended(Outcome.PLAN_ONLY, in_words(seen))
     asks = run.memory.mode is Mode.CONFIRM and run.memory.attempt == run.memory.looks == 1
