@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from tapreach.robot.clock import SECOND, Clock, MonotonicClock
+from tapreach.tasks.compute_worker import die_with_parent
 
 Result = TypeVar("Result")
 Run = Callable[[int, Clock], Awaitable[Result]]
@@ -56,7 +57,9 @@ async def _spread(
     for name in _ONE_THREAD:
         os.environ.setdefault(name, "1")
     spawn = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(budget.jobs, spawn, max_tasks_per_child=_RUNS_PER_PROCESS) as pool:
+    with ProcessPoolExecutor(
+        budget.jobs, spawn, initializer=die_with_parent, max_tasks_per_child=_RUNS_PER_PROCESS
+    ) as pool:
         loop = asyncio.get_running_loop()
         running: set[asyncio.Future[Result]] = set()
         left = list(reversed(numbers))

@@ -5,6 +5,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from typing import TypeVar
 
+from tapreach.tasks.compute_worker import die_with_parent
+
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
@@ -13,5 +15,6 @@ def spread(function: Callable[[Task], Result], tasks: Sequence[Task], jobs: int)
     """Return the results in the order of the tasks. Function and tasks must pickle for more than one job."""
     if jobs <= 1:
         return [function(task) for task in tasks]
-    with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(jobs, spawn, initializer=die_with_parent) as pool:
         return list(pool.map(function, tasks))
