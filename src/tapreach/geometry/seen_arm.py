@@ -12,7 +12,7 @@ from tapreach.geometry.arm_kinematics import ArmJoints, ArmKinematics, Reach
 from tapreach.geometry.finite import FloatArray, finite_array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SeenArm:
     """See ArmKinematics. Joints are what the servos are sent; places are in `seen`, the base frame as the
     camera shows it, where the things that it sees are too.

@@ -1,9 +1,14 @@
 """What is not seen any more and was doubtful is not driven at."""
 
+from dataclasses import replace
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import RigidTransform
 
+from tapreach.geometry.seen_arm import SeenArm
+from tapreach.tasks.fetch.claw_room import Claw
 from tapreach.tasks.fetch.reach import OFF_FLOOR, Verdict, judge
 from tapreach.tasks.fetch.thing import NoSize, Thing
 from tapreach.tasks.fetch.unseen import refused_unseen
@@ -34,3 +39,9 @@ def test_width_that_is_known_badly_alone_is_no_reason():
 
 def test_too_wide_from_here_is_not_looked_at_from_elsewhere_unseen():
     assert "too wide" in refused_unseen(thing_at(1.0, 0.0, width=0.085), CLAW, "hidden")
+
+
+def test_arm_that_was_seen_to_stand_off_its_file_is_judged_as_well():
+    seen = SeenArm(CLAW.arm.kinematics, np.array([0.02, -0.01, 0.03]), RigidTransform.identity())
+    claw = Claw(replace(CLAW.arm, kinematics=seen))
+    assert judge(thing_at(0.6, 0.0).size, claw).verdict is Verdict.YES

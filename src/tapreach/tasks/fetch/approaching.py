@@ -52,7 +52,7 @@ async def approach(run: FetchRun) -> Ended:
 async def _not_arrived(run: FetchRun) -> str:
     """Return the true reason: too wide from every side that was seen, or too many legs."""
     size = run.thing().size
-    if isinstance(size, ThingSize) and size.width > run.claw.opens_to:
+    if isinstance(size, ThingSize) and size.width > run.filed_claw.opens_to:
         return in_words(await previewed(run, is_last_look=True))
     return f"did not arrive before it in {MOST_LEGS} legs: the way keeps changing"
 
@@ -62,7 +62,7 @@ async def last_look(run: FetchRun) -> Ended:
     is_lost = _is_lost(run, BLIND_SD)
     if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := _anew(run)):
         return anew
-    if is_lost and (doubtful := refused_unseen(run.thing(), run.claw, _loss(run))):
+    if is_lost and (doubtful := refused_unseen(run.thing(), run.filed_claw, _loss(run))):
         return Ended(Outcome.CANNOT, doubtful)
     if is_lost:
         return Ended(Outcome.LOST, f"lost the thing, {_known_to(run)}: {_loss(run)}")
@@ -77,7 +77,7 @@ async def last_look(run: FetchRun) -> Ended:
 
 def _from_another_side(run: FetchRun, seen: ReachPreview) -> Ended | None:
     """End with driving to where it may be narrower, once."""
-    if seen.size is None or run.memory.seeks_another_side or not may_be_narrower(seen.size, run.claw):
+    if seen.size is None or run.memory.seeks_another_side or not may_be_narrower(seen.size, run.filed_claw):
         return None
     run.remember(seeks_another_side=True)
     return Ended(Outcome.MISSED, f"{in_words(seen)}; a box may be narrower from another side")

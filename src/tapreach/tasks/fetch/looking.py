@@ -130,7 +130,7 @@ async def judge_reach(run: FetchRun) -> Ended:
     if seen.verdict is Verdict.NO:
         return Ended(Outcome.CANNOT, in_words(seen))
     loss = run.locating.follower.loss if run.locating is not None else ""
-    if doubtful := refused_unseen(run.thing(), run.claw, loss):
+    if doubtful := refused_unseen(run.thing(), run.filed_claw, loss):
         return Ended(Outcome.CANNOT, doubtful)
     if run.memory.mode is Mode.PLAN:
         return Ended(Outcome.PLAN_ONLY, in_words(seen))

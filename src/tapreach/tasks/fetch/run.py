@@ -118,6 +118,11 @@ class FetchRun:
         """The arm as a grasp sees it."""
         return Claw(self.arm)
 
+    @property
+    def filed_claw(self) -> Claw:
+        """The arm of the robot file, by which it is judged what can be gripped at all."""
+        return Claw(ArmWorkspace.of(self.context.description))
+
     def measured(self, size: ThingSize | NoSize, point_in_world: FloatArray) -> None:
         """Take a new size, measured with the tapped place at `point_in_world`; one that cannot be told does
         not replace one that is known, nor does one that differs much, until another from elsewhere agrees.
