@@ -63,14 +63,15 @@ def test_size_against_the_known_one_is_believed_when_it_is_measured_again_from_e
     both, doubt = size_at(0.5, 0.0, 0.3, 0.34), SizeDoubt()
     assert doubt.believed(both, cup, PlanarPose(), 0.0) is None
     assert doubt.believed(both, cup, PlanarPose(0.02), 0.0) is None
-    assert doubt.believed(both, cup, PlanarPose(0.3), 0.0) is both
+    assert doubt.believed(both, cup, PlanarPose(0.3), 0.0) == replace(both, told=2)
 
 
 def test_size_that_agrees_again_ends_the_doubt() -> None:
     cup = replace(size_at(0.5, 0.0, 0.06, 0.08), seen_along=0.0)
     both, doubt = size_at(0.5, 0.0, 0.3, 0.34), SizeDoubt()
     doubt.believed(both, cup, PlanarPose(), 0.0)
-    assert doubt.believed(cup, cup, PlanarPose(0.2), 0.0) is cup
+    again = doubt.believed(cup, cup, PlanarPose(0.2), 0.0)
+    assert again is not None and again.width == cup.width
     assert doubt.believed(both, cup, PlanarPose(0.4), 0.0) is None
 
 
@@ -80,4 +81,15 @@ def test_single_views_count_when_two_from_different_places_tell_the_same() -> No
     assert doubt.believed(alone, unknown, PlanarPose(), 0.0) is None
     assert doubt.believed(other, unknown, PlanarPose(0.2), 0.0) is None
     assert doubt.believed(alone, unknown, PlanarPose(0.4), 0.0) is None
-    assert doubt.believed(same, unknown, PlanarPose(0.6), 0.0) is same.by_one_view
+    believed = doubt.believed(same, unknown, PlanarPose(0.6), 0.0)
+    assert believed is not None and (believed.width, believed.told) == (0.051, 2)
+
+
+def test_size_is_told_once_more_by_each_measurement_from_elsewhere_that_agrees() -> None:
+    size, doubt = size_at(0.5, 0.0, 0.15), SizeDoubt()
+    current, told = NoSize("not measured"), []
+    for x in (0.0, 0.02, 0.2, 0.22, 0.5):
+        current = doubt.believed(size, current, PlanarPose(x), 0.0)
+        assert current is not None
+        told.append(current.told)
+    assert told == [1, 1, 2, 2, 3]

@@ -17,7 +17,13 @@ from tapreach.tasks.estimating import LocatedPoint, estimate
 from tapreach.tasks.fetch.fetch_state import Mode
 from tapreach.tasks.fetch.gripping import _let_be_moved
 from tapreach.tasks.fetch.known_thing import PUSHED_SD, Appearance, KnownThing
-from tapreach.tasks.fetch.looking_again import expected, is_where_it_was, keep_what_is_known, tap_again
+from tapreach.tasks.fetch.looking_again import (
+    expected,
+    is_where_it_was,
+    keep_what_is_known,
+    tap_again,
+    tap_unseen,
+)
 from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.run import FetchRun
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
@@ -186,3 +192,25 @@ def test_thing_that_is_gone_or_stands_far_from_where_it_was_is_not_tapped() -> N
     assert looking_at(what, picture(None)) is None
     assert looking_at(what, picture(THING + np.array([0.05, 0.12, 0.0]))) is None
     assert looking_at(known(), picture(THING)) is None, "a picture that cannot be used"
+
+
+def tapped_unseen(sd: float, here: PlanarPose = HERE) -> tuple[Tap | None, FetchRun]:
+    run = run_with(known(sd))
+    run.context.poses.add(run.context.clock.now_ns() + 2, here)
+    run.context.frames.add(Frame(7, 0, 0, ROBOT.camera.model().size, b""))
+    return tap_unseen(run), run
+
+
+def test_thing_that_looks_otherwise_is_tapped_on_its_front_where_that_is_surely_met() -> None:
+    tap, run = tapped_unseen(0.004)
+    assert tap is not None and run.memory.known is not None and known().size is not None
+    before, now = known(), run.memory.known
+    front = now.place.point_in_world
+    assert (tap.u, tap.v) == pytest.approx(tuple(pixel_of(front, HERE)))
+    assert front + now.axis_offset == pytest.approx(before.place.point_in_world + before.axis_offset)
+    assert np.linalg.norm(now.axis_offset) == pytest.approx(before.size.width / 2.0)
+
+
+def test_thing_that_may_be_missed_or_is_out_of_the_picture_is_not_tapped_unseen() -> None:
+    assert tapped_unseen(0.05)[0] is None
+    assert tapped_unseen(0.004, HERE.compose(PlanarPose(0.0, 0.0, 1.5)))[0] is None

@@ -95,13 +95,14 @@ def test_outline_too_wide_is_looked_at_from_near_before_it_is_believed():
     far, near = (ahead(distance, width=0.2) for distance in (1.5, 0.6))
     found = [preview(by_picture(thing), [], HERE, ROBOT) for thing in (far, near)]
     assert [each.verdict for each in found] == [Verdict.UNSURE, Verdict.NO]
+    assert preview(by_picture(near, told=1), [], HERE, ROBOT).verdict is Verdict.UNSURE
     assert "200 mm wide" in found[0].reason and found[0].approach is not None
     assert preview(far, [], HERE, ROBOT).verdict is Verdict.NO
     assert preview(by_picture(far), [], HERE, ROBOT, is_last_look=True).verdict is Verdict.NO
 
 
-def by_picture(thing):
-    return replace(thing, size=replace(thing.size, by_picture=True))
+def by_picture(thing, told=2):
+    return replace(thing, size=replace(thing.size, by_picture=True, told=told))
 
 
 def test_doubt_at_the_last_look_is_a_no():

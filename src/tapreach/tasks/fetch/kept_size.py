@@ -18,10 +18,12 @@ _SAME_SIDE = math.radians(15.0)
 class SizeDoubt:
     """What was measured and not believed yet, each with where the base stood: a size `against` the one that
     is known, and one told by a single view, `alone`. Both are believed once another from elsewhere agrees.
+    taken_from: where the base stood when the known one was measured, None where that is not known.
     """
 
     against: tuple[ThingSize, PlanarPose] | None = None
     alone: tuple[ThingSize, PlanarPose] | None = None
+    taken_from: PlanarPose | None = None
 
     def believed(
         self, new: ThingSize | NoSize, current: ThingSize | NoSize, here: PlanarPose, seen_along: float
@@ -31,18 +33,29 @@ class SizeDoubt:
         seen_along: the new line of sight's direction in the world [rad].
         """
         if isinstance(new, NoSize):
-            return self._told_twice(new.by_one_view, here)
-        if isinstance(current, NoSize) or not contradicts(new, current, seen_along):
+            believed = self._told_twice(new.by_one_view, here)
+        elif isinstance(current, NoSize) or not contradicts(new, current, seen_along):
             self.against = None
-            return new
-        before, self.against = _newest(self.against, new, here)
-        return new if before is not None and not contradicts(new, before, seen_along) else None
+            believed = replace(new, told=self._times_told(new, current, here))
+        else:
+            before, self.against = _newest(self.against, new, here)
+            is_told = before is not None and not contradicts(new, before, seen_along)
+            believed = replace(new, told=2) if is_told else None
+        if believed is not None and (isinstance(current, NoSize) or believed.told != current.told):
+            self.taken_from = here
+        return believed
 
     def _told_twice(self, new: ThingSize | None, here: PlanarPose) -> ThingSize | None:
         if new is None:
             return None
         before, self.alone = _newest(self.alone, new, here)
-        return new if before is not None and agree(new, before) else None
+        return replace(new, told=2) if before is not None and agree(new, before) else None
+
+    def _times_told(self, new: ThingSize, current: ThingSize | NoSize, here: PlanarPose) -> int:
+        if isinstance(current, NoSize) or not agree(new, current):
+            return 1
+        is_elsewhere = self.taken_from is not None and is_apart(self.taken_from, here, *_ELSEWHERE)
+        return current.told + int(is_elsewhere)
 
 
 def _newest(

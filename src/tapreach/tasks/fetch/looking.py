@@ -17,6 +17,7 @@ from tapreach.tasks.fetch.looking_again import (
     locate_again,
     still_followed,
     tap_again,
+    tap_unseen,
 )
 from tapreach.tasks.fetch.preview import ReachPreview, preview
 from tapreach.tasks.fetch.reach import Verdict
@@ -186,7 +187,7 @@ async def _tap(run: FetchRun) -> Tap | None:
     memory = run.memory
     if memory.known is None:
         return memory.tap
-    tap = still_followed(run) or await tap_again(run) or memory.seen_again
+    tap = still_followed(run) or await tap_again(run) or memory.seen_again or tap_unseen(run)
     if tap is not None:
         run.remember(tap=tap, seen_again=None)
     return tap

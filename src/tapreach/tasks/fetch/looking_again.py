@@ -6,15 +6,18 @@ looked in the last picture that showed it.
 
 import math
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
 from tapreach.errors import FrameError
+from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.messages import Frame
 from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold
+from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.known_thing import Appearance, KnownThing
 from tapreach.tasks.fetch.run import FetchRun
 from tapreach.tasks.fetch.thing import ThingSize
@@ -35,6 +38,8 @@ _USUAL_HALF = 0.03
 """Half of how large a thing is that was never measured [m]."""
 _LEAST_STEP, _MOST_STEP = 0.06, 0.2
 _STEP_M = 0.002
+_SURELY_MET = 0.6
+"""A tap unseen may miss the middle by this share of half the thing's width, one sigma."""
 
 
 def keep_what_is_known(run: FetchRun) -> None:
@@ -103,6 +108,34 @@ async def _frame_from_now_on(context: TaskContext) -> Frame:
         is_late = context.clock.now_ns() - now_ns > LATEST_NS
         if is_late or context.camera_delay.taken_ns(newest.captured_ns) >= now_ns:
             return newest
+
+
+def tap_unseen(run: FetchRun) -> Tap | None:
+    """Return a tap in the newest picture on where the thing's front should be, for one that looks otherwise
+    from here; None where it is not known well enough to be surely met, or is out of the picture.
+
+    From then on that front is the spot that is known.
+    """
+    known, frame = run.memory.known, run.context.frames.newest
+    if known is None or known.size is None or known.axis_offset is None or frame is None:
+        return None
+    place = known.place.seen_from(run.here, run.context.description)
+    half = known.size.width / 2.0
+    middle = place.point_in_world + known.axis_offset
+    ahead, across = _along_and_across(run.here, middle)
+    front = middle - half * ahead
+    pixel = pixel_of(run.context, front)
+    if pixel is None or float(across @ place.cov_in_world @ across) > (_SURELY_MET * half) ** 2:
+        return None
+    run.remember(known=replace(known, place=replace(place, point_in_world=front), axis_offset=half * ahead))
+    return Tap(frame.frame_id, pixel.u, pixel.v)
+
+
+def _along_and_across(here: PlanarPose, place: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return level unit vectors (3,) from the base to a place, and to the left of that."""
+    off = place[:2] - [here.x, here.y]
+    x, y = off / max(float(np.hypot(*off)), 1e-9)
+    return np.array([x, y, 0.0]), np.array([-y, x, 0.0])
 
 
 async def _out_of_the_picture(run: FetchRun) -> None:

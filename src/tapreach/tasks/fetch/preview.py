@@ -26,7 +26,10 @@ SUPPOSED_WIDTH, SUPPOSED_HEIGHT = 0.06, 0.10
 SIDE_DEPTH = 0.4
 """One sigma of how much deeper or less deep than wide a thing is, as a share of its width."""
 WIDTH_TOLD_WITHIN = 0.9
-"""What is too wide by its outline in pictures from farther away [m] is looked at from near first."""
+WIDTH_TOLD = 2
+"""What is too wide by its outline in pictures from farther away [m], or by fewer looks, is first looked at
+from near.
+"""
 _PLACE_SHARE = 0.25
 """A place known worse than this share of its distance (two sigmas) is not driven up to as it is."""
 _SURE = 2.0
@@ -107,8 +110,8 @@ def preview(
 
 
 def _believed(size: ThingSize | NoSize, world_from_base: PlanarPose, body: Body) -> ThingSize | NoSize:
-    """Return the size, or why it is not believed: from far what stands close to the thing may pass for part
-    of it, and make it too wide.
+    """Return the size, or why it is not believed: from far, or by one look alone, what stands close to the
+    thing may pass for part of it.
     """
     if isinstance(size, NoSize) or not size.by_picture:
         return size
@@ -116,7 +119,7 @@ def _believed(size: ThingSize | NoSize, world_from_base: PlanarPose, body: Body)
     if size.width <= body.claw.opens_to and not stands_on:
         return size
     off = np.asarray(size.axis_in_world)[:2] - [world_from_base.x, world_from_base.y]
-    if float(np.hypot(*off)) <= WIDTH_TOLD_WITHIN:
+    if float(np.hypot(*off)) <= WIDTH_TOLD_WITHIN and size.told >= WIDTH_TOLD:
         return size
     looks = f"{1000.0 * size.width:.0f} mm wide and {1000.0 * size.height:.0f} mm high"
     return NoSize(f"it looks {looks} from here; what stands close to it may pass for part of it")

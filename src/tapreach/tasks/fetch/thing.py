@@ -14,7 +14,8 @@ class ThingSize:
     height [m]; axis_cov_in_world (3, 3) [m²]. caveat: what to know of it, '' for nothing. seen_along:
     direction in the world of the line of sight across which the width was measured [rad]; None stands for
     that from where the base is. goes_on_above: its upper end was not found; `height` is as far as was looked.
-    by_picture: the outline was found, not drawn by somebody.
+    by_picture: the outline was found, not drawn by somebody. told: how often it was measured so, each time
+    from elsewhere.
     """
 
     width: float
@@ -27,6 +28,7 @@ class ThingSize:
     caveat: str = ""
     seen_along: float | None = None
     by_picture: bool = False
+    told: int = 1
     goes_on_above: bool = False
 
 
