@@ -7,8 +7,9 @@ import numpy as np
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch.approach import Approach, Leg
 from tapreach.tasks.fetch.followed_from_here import follow_from_here, has_grown
-from tapreach.tasks.fetch.known_target import pixel_of
+from tapreach.tasks.fetch.glance import glance
 from tapreach.tasks.fetch.looking import ACCURACY, MOST_LOOKS, in_words, measure, previewed
+from tapreach.tasks.fetch.looking_again import still_followed, tap_again, tap_unseen
 from tapreach.tasks.fetch.preview import ReachPreview
 from tapreach.tasks.fetch.reach import Verdict, may_be_narrower
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -17,7 +18,7 @@ from tapreach.tasks.fetch.thing import ThingSize
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import TargetLost
 
-MOST_LEGS = 10
+MOST_LEGS = 14
 BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
 LOOK_ANEW_SD = 0.02
@@ -30,6 +31,7 @@ NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.03, math.radians(3.0)
 
 async def approach(run: FetchRun) -> Ended:
     """Drive to the last look. Raises MotionInterrupted, LinkLost."""
+    unseen_way = 0.0
     for _ in range(MOST_LEGS):
         seen = run.preview = await previewed(run)
         if seen.verdict is Verdict.NO or seen.approach is None:
@@ -37,12 +39,15 @@ async def approach(run: FetchRun) -> Ended:
         leg = next_leg(seen.approach)
         if leg is None:
             return Ended(Outcome.DONE, "near enough for the last look")
+        back = None if leg.sees_thing or not run.ways.renews_on_way else glance(run, unseen_way)
+        leg = leg if back is None else back
         try:
             await drive(run, leg)
         except TargetLost as lost:
-            return _anew(run) or Ended(Outcome.LOST, str(lost))
+            return await _anew(run) or Ended(Outcome.LOST, str(lost))
         await measure(run)
-        if _is_lost(run, LOOK_ANEW_SD) and (anew := _anew(run)):
+        unseen_way = unseen_way + abs(leg.step.advance) if _loss(run) and back is None else 0.0
+        if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run)):
             return anew
         if run.ways.renews_on_way and has_grown(run):
             await follow_from_here(run, ACCURACY)
@@ -60,7 +65,7 @@ async def _not_arrived(run: FetchRun) -> str:
 async def last_look(run: FetchRun) -> Ended:
     """Measure the thing from near and decide on the grasp."""
     is_lost = _is_lost(run, BLIND_SD)
-    if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := _anew(run)):
+    if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := await _anew(run)):
         return anew
     if is_lost and (doubtful := refused_unseen(run.thing(), run.filed_claw, _loss(run))):
         return Ended(Outcome.CANNOT, doubtful)
@@ -83,13 +88,11 @@ def _from_another_side(run: FetchRun, seen: ReachPreview) -> Ended | None:
     return Ended(Outcome.MISSED, f"{in_words(seen)}; a box may be narrower from another side")
 
 
-def _anew(run: FetchRun) -> Ended | None:
-    """End with looking for the thing from here, if it should be in the picture and that was not tried too
-    often.
-    """
-    known = run.memory.known
-    is_in_picture = known is not None and pixel_of(run.context, known.place.point_in_world) is not None
-    if not (run.ways.renews_on_way and is_in_picture and run.memory.looks < MOST_LOOKS):
+async def _anew(run: FetchRun) -> Ended | None:
+    """End with locating the thing from here, if it is found in the picture, and not too often before."""
+    if not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
+        return None
+    if (still_followed(run) or await tap_again(run) or tap_unseen(run)) is None:
         return None
     run.remember(looks=run.memory.looks + 1)
     return Ended(Outcome.UNSURE, f"{_known_to(run)}: located anew")
