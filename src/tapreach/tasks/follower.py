@@ -59,6 +59,11 @@ class Follower:
         """Where the target is (3,) [m], once somebody knows it: makes for better guesses."""
 
     @property
+    def key(self) -> int:
+        """Under which the tracker is kept where the computing is done."""
+        return self._key
+
+    @property
     def last(self) -> Sighting:
         """The newest sighting."""
         return self.sightings[-1]

@@ -5,13 +5,13 @@ over the thing while the robot drives up to it, as if it were ever a little fart
 held well; and which spot of the thing it is does not matter to the claw.
 """
 
-from tapreach.tasks.fetch.looking import end_following
 from tapreach.tasks.fetch.looking_again import keep_what_is_known, still_followed
 from tapreach.tasks.fetch.run import FetchRun
 from tapreach.tasks.follower import Follower
 from tapreach.tasks.locate import Locating
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
+from tapreach.tasks.task import Tap
 
 GROWN = 2.0
 """Seen so many times larger than where it was tapped it is taken as tapped anew."""
@@ -33,19 +33,25 @@ def has_grown(run: FetchRun) -> bool:
 
 async def follow_from_here(run: FetchRun, accuracy: float) -> None:
     """Go on with a tracker that begins where the place is followed now; what was known tells the distance
-    until the new views know better.
+    until the new views know better. Where that is too little for a position all stays as it was.
     """
     keep_what_is_known(run)
-    tap, known, context = still_followed(run), run.memory.known, run.context
-    if tap is None or known is None:
+    tap, known, before = still_followed(run), run.memory.known, run.locating
+    if tap is None or known is None or before is None:
         return
-    clear = run.locating.keep_clear if run.locating is not None else ()
-    await end_following(run)
-    report = TargetReport(run.memory.target_id, TargetSource.LOCATE, tap, context.description)
-    follower = Follower(context, tap, key=run.memory.target_id, uses_background=run.ways.use_background)
-    locating = Locating(context, follower, report, accuracy)
-    locating.keep_clear = clear
+    locating = _begun_at(run, tap, ~before.follower.key, accuracy)
     place = known.place.less_sure(_PLACE_COUNTS).perhaps_moved(ANOTHER_SPOT_SD, ANOTHER_SPOT_SD)
     await locating.recall(place)
     await locating.begin()
-    run.locating = locating
+    is_placed = locating.estimate is not None and locating.estimate.point_in_world is not None
+    await (before if is_placed else locating).follower.close()
+    run.locating = locating if is_placed else before
+
+
+def _begun_at(run: FetchRun, tap: Tap, key: int, accuracy: float) -> Locating:
+    context, before = run.context, run.locating
+    report = TargetReport(run.memory.target_id, TargetSource.LOCATE, tap, context.description)
+    follower = Follower(context, tap, key=key, uses_background=run.ways.use_background)
+    locating = Locating(context, follower, report, accuracy)
+    locating.keep_clear = before.keep_clear if before is not None else ()
+    return locating
