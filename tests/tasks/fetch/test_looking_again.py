@@ -25,7 +25,7 @@ from tapreach.tasks.fetch.looking_again import (
     tap_unseen,
 )
 from tapreach.tasks.fetch.memory import FetchMemory
-from tapreach.tasks.fetch.run import FetchRun
+from tapreach.tasks.fetch.run import FetchRun, NotKnown
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.known_place import KnownPlace
 from tapreach.tasks.optics import optics_of, points_in_camera
@@ -214,3 +214,16 @@ def test_thing_that_looks_otherwise_is_tapped_on_its_front_where_that_is_surely_
 def test_thing_that_may_be_missed_or_is_out_of_the_picture_is_not_tapped_unseen() -> None:
     assert tapped_unseen(0.05)[0] is None
     assert tapped_unseen(0.004, HERE.compose(PlanarPose(0.0, 0.0, 1.5)))[0] is None
+
+
+def test_thing_whose_views_contradict_each_other_is_where_it_was_known_to_be() -> None:
+    run = run_with(known())
+    assert run.locating is not None
+    run.locating = None
+    there = run.thing()
+    assert there.point_in_world == pytest.approx(known().place.point_in_world)
+    assert isinstance(there.size, ThingSize)
+    with pytest.raises(NotKnown):
+        nothing = run_with(None)
+        nothing.locating = None
+        nothing.thing()

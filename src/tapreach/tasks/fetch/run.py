@@ -80,16 +80,25 @@ class FetchRun:
         return self.context.poses.newest()[1]
 
     def thing(self) -> Thing:
-        """Return the thing where it is now known to be. Raises NotKnown before it has a position."""
-        estimate = self.locating.estimate if self.locating is not None else None
-        present = None if estimate is None else at_present(estimate, self.here, self.context.description)
-        if present is None:
-            raise NotKnown("the thing has no position yet: locate it first")
+        """Return the thing where it is now known to be; where it was known to be, while its views contradict
+        each other. Raises NotKnown before it has a position.
+        """
+        point, covariance = self._place()
         size = self.size
         if isinstance(size, ThingSize) and self.axis_offset is not None:
-            axis = present.point_in_world + self.axis_offset
-            size = replace(size, axis_in_world=axis, axis_cov_in_world=present.cov_in_world)
-        return Thing(present.point_in_world, present.cov_in_world, size)
+            size = replace(size, axis_in_world=point + self.axis_offset, axis_cov_in_world=covariance)
+        return Thing(point, covariance, size)
+
+    def _place(self) -> tuple[FloatArray, FloatArray]:
+        """Return where the tapped spot is in the world (3,) [m], with its covariance (3, 3) [m²]."""
+        estimate = self.locating.estimate if self.locating is not None else None
+        present = None if estimate is None else at_present(estimate, self.here, self.context.description)
+        if present is not None:
+            return present.point_in_world, present.cov_in_world
+        if self.memory.known is None:
+            raise NotKnown("the thing has no position yet: locate it first")
+        place = self.memory.known.place.seen_from(self.here, self.context.description)
+        return place.point_in_world, place.cov_in_world
 
     def axis_in_world(self) -> FloatArray:
         """Return the thing's middle (3,) [m]. Raises NotKnown before it was measured."""
