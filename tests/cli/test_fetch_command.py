@@ -36,7 +36,7 @@ def test_plan_is_printed_a_line_a_phase(play):
         done = await fetched(here, *PLACE, "--mode", "plan")
         assert done.exit_code == 0, done.stderr
         heads = [line.split()[0] for line in done.stdout.splitlines()]
-        assert heads == ["look", "preview", "planned"]
+        assert heads == ["look", "preview", "planned"], done.stdout
         assert re.search(r"^preview .*\(.*away.*\)$", done.stdout, re.MULTILINE)
         assert re.search(r"^planned +can it be fetched: (yes|unsure); ", done.stdout, re.MULTILINE)
 
@@ -47,7 +47,7 @@ def test_no_to_the_plan_stops_and_exits_with_1(play):
     async def scenario(here):
         done = await fetched(here, *PLACE, "--mode", "confirm", text="n\n")
         assert done.exit_code == 1
-        assert "fetch it? [y/N]" in done.stdout
+        assert "fetch it? [y/N]" in done.stdout, done.stderr
         assert "stopped: stopped (button); the robot stands" in done.stderr
 
     play(scenario)

@@ -135,7 +135,7 @@ async def judge_reach(run: FetchRun) -> Ended:
         return Ended(Outcome.CANNOT, doubtful)
     if run.memory.mode is Mode.PLAN:
         return Ended(Outcome.PLAN_ONLY, in_words(seen))
-    asks = run.memory.mode is Mode.CONFIRM and run.memory.attempt == run.memory.looks == 1
+    asks = run.memory.mode is Mode.CONFIRM and not run.memory.is_agreed
     return Ended(Outcome.ASK if asks else Outcome.DONE, in_words(seen))
 
 

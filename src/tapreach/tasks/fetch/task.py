@@ -96,8 +96,9 @@ class FetchTask:
         run.remember(phase=phase, attempt=memory.attempt + (phase is Phase.BACK_OFF))
         self.memory = run.memory
 
-    async def _confirm(self, _: FetchRun) -> Ended:
+    async def _confirm(self, run: FetchRun) -> Ended:
         await self._confirmed.wait()
+        run.remember(is_agreed=True)
         return Ended(Outcome.DONE, "the operator agrees")
 
     def _tell(self, run: FetchRun, why: str) -> None:
