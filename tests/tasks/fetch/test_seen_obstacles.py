@@ -8,6 +8,7 @@ import pytest
 from tapreach.drivers.sim.truth import WorldTruth
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.estimating import LocatedPoint, estimate
+from tapreach.tasks.fetch.later_pictures import LaterPicture
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.seen_obstacles import obstacles_in_views
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
@@ -41,6 +42,18 @@ def seen() -> tuple[tuple[Obstacle, ...], WorldTruth]:
     return obstacles_in_views(found, thing, jpegs, DESCRIPTION), truth
 
 
+def seen_later() -> tuple[tuple[Obstacle, ...], WorldTruth]:
+    """Return what is seen when the thing was followed in the first half of the pictures only."""
+    shots, robot = film("room")
+    sightings = followed(shots, on_front(THING, shots, robot))
+    half = len(sightings) // 2
+    found, truth = located(sightings[:half]), shots[-1][1]
+    jpegs = {frame.frame_id: frame.jpeg for frame, _ in shots}
+    later = [LaterPicture(each.frame_id, each.world_from_base) for each in sightings[half:]]
+    thing = thing_of(found, truth, sightings[-1].world_from_base)
+    return obstacles_in_views(found, thing, jpegs, DESCRIPTION, later), truth
+
+
 def off(obstacle: Obstacle, truth: WorldTruth, name: str) -> float:
     """Return the way from the middle of a thing to what was seen; sightings are in the world of the truth."""
     middle = np.array(truth.object(name).centre_in_world[:2])
@@ -49,6 +62,12 @@ def off(obstacle: Obstacle, truth: WorldTruth, name: str) -> float:
 
 def test_what_stands_on_the_way_is_seen_where_it_stands() -> None:
     obstacles, truth = seen()
+    for name in ("tea", "red can"):
+        assert min(off(each, truth, name) for each in obstacles) < 0.05, name
+
+
+def test_what_stands_is_seen_too_in_pictures_in_which_the_thing_is_not_followed() -> None:
+    obstacles, truth = seen_later()
     for name in ("tea", "red can"):
         assert min(off(each, truth, name) for each in obstacles) < 0.05, name
 

@@ -9,7 +9,7 @@ from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings
 from tapreach.tasks.fetch.outline import Outline
 from tapreach.tasks.fetch.remembered import Remembered
 from tapreach.tasks.fetch.seen_obstacles import own_room
-from tapreach.tasks.fetch.surroundings import Seen, SeenAround, to_plan_round
+from tapreach.tasks.fetch.surroundings import KeptClearOf, Seen, SeenAround, to_plan_round
 from tasks.fetch.worlds import ROBOT, obstacle_at, thing_at
 
 GOAL = thing_at(1.2, 0.1)
@@ -53,12 +53,14 @@ def test_what_stands_apart_stays_as_it_was_seen() -> None:
 def test_ways_are_sought_around_ever_less_and_at_last_around_what_is_told_alone() -> None:
     told = [obstacle_at("target 2", 0.5, 0.4)]
     seen = [Seen(obstacle_at("something", 0.6, 0.1), True), Seen(obstacle_at("something", 0.9, -0.1), False)]
-    every, squeezed, sure, last = to_plan_round(told, seen)
-    assert [len(every), len(squeezed), len(sure), len(last)] == [3, 3, 2, 1]
+    ways = to_plan_round(told, seen)
+    assert [len(way.obstacles) for way in ways] == [3, 3, 3, 2, 1]
+    assert [way.drifts for way in ways] == [True, True, False, False, True]
+    every, squeezed = ways[0].obstacles, ways[1].obstacles
     assert all(a.spread >= b.spread for a, b in zip(every, squeezed, strict=True))
-    assert all(way[0] is told[0] for way in (every, squeezed, sure, last))
+    assert all(way.obstacles[0] is told[0] for way in ways)
 
 
 def test_without_anything_seen_there_is_one_plan() -> None:
     told = [obstacle_at("target 2", 0.5, 0.4)]
-    assert to_plan_round(told, []) == [tuple(told)]
+    assert to_plan_round(told, []) == [KeptClearOf(tuple(told))]

@@ -1,6 +1,6 @@
 """All of a robot that matters when a fetch is planned, made once from its file."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,6 +45,10 @@ class Body:
             ways,
             drift,
         )
+
+    def without_drift(self) -> "Body":
+        """Return the same for ways on which the others are seen."""
+        return replace(self, drift=np.zeros_like(self.drift))
 
     def drift_at(self, way: float) -> float:
         """Return how far off a place may be reached that lies `way` [m] away, two sigmas [m]."""

@@ -153,8 +153,11 @@ async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
     if estimate is not None:
         await run.around.look(run.context, estimate, thing)
     seen = run.around.obstacles(run.here, thing, run.context.description)
-    for obstacles in to_plan_round(run.others, seen):
-        found = await run.context.compute.call(plan, thing, obstacles, run.here, run.context.description)
+    for clear_of in to_plan_round(run.others, seen):
+        sought = partial(plan, drifts=clear_of.drifts)
+        found = await run.context.compute.call(
+            sought, thing, clear_of.obstacles, run.here, run.context.description
+        )
         if found.approach is not None:
             break
     return found

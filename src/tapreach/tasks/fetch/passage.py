@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -49,6 +50,14 @@ class Passage:
         things = Surroundings.of(kept)
         return cls(body, things, np.clip(things.clearances(here), TOUCH, CLEAR))
 
+    @cached_property
+    def drifts(self) -> FloatArray:
+        """(m,): how far off the base may be where it passes each on its far side, two sigmas [m]."""
+        things = self.things
+        ends = np.hypot(*np.stack([things.starts, things.ends]).transpose(2, 0, 1)).max(axis=0)
+        ways = ends + things.radii + self.body.outline.turning_radius
+        return np.array([self.body.drift_at(float(way)) for way in ways])
+
     @property
     def touching(self) -> Obstacle | None:
         """What the robot touches where it stands, if anything."""
@@ -80,8 +89,10 @@ class Passage:
         return self._first(clear, needed)
 
     def needed_at(self, place: FloatArray) -> FloatArray:
-        """Return (m,): the way to keep from each at (2,) [m], with what odometry may drift up to there."""
-        drift = self.body.drift_at(float(np.hypot(*place)))
+        """Return (m,): the way to keep from each on the way to (2,) [m], with what odometry may drift up to
+        there, or up to where it is passed if that is nearer.
+        """
+        drift = np.minimum(self.body.drift_at(float(np.hypot(*place))), self.drifts)
         needed = np.where(self.needed >= CLEAR, self.needed + drift, self.needed)
         needed[-1] = self.needed[-1]
         return np.asarray(needed)

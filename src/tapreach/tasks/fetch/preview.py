@@ -85,17 +85,19 @@ def preview(
     free_behind: float = 0.0,
     is_last_look: bool = False,
     seeks_another_side: bool = False,
+    drifts: bool = True,
 ) -> ReachPreview:
     """Return whether and how the robot, standing at `world_from_base`, can fetch the thing.
 
     others: what must not be touched, in the world. free_behind: how far straight back the floor is known to
     be free [m]. is_last_look: the thing will not be measured better: widths count as they are, and what
-    cannot be told then is a no. seeks_another_side: it was too wide from where it was looked at last. Raises
-    InputError for values that are not finite, and for what is no covariance.
+    cannot be told then is a no. seeks_another_side: it was too wide from where it was looked at last. drifts:
+    the way keeps clear of the others by what odometry may be off there, too. Raises InputError for values
+    that are not finite, and for what is no covariance.
     """
     finite_array("point_in_world", thing.point_in_world, (3,))
     require_covariance("point_cov_in_world", thing.point_cov_in_world, 3)
-    body = Body.of(description)
+    body = Body.of(description) if drifts else Body.of(description).without_drift()
     size = thing.size if is_last_look else _believed(thing.size, world_from_base, body)
     if isinstance(size, NoSize):
         found = _unmeasured(thing, size, others, world_from_base, body, free_behind)

@@ -1,6 +1,6 @@
 """What else stands near the way to a thing, by the pictures in which the thing was followed."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from tapreach.geometry.convex import distances_from_polygon
 from tapreach.geometry.finite import FloatArray
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.fetch.later_pictures import LaterPicture
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.standing_clusters import clustered
 from tapreach.tasks.fetch.standing_points import StandingPoints, standing_points
@@ -25,32 +26,40 @@ _UNDER_ROBOT = 0.12
 _MOST = 16
 
 
-async def seen_obstacles(context: TaskContext, located: LocatedPoint, thing: Thing) -> tuple[Obstacle, ...]:
+async def seen_obstacles(
+    context: TaskContext, located: LocatedPoint, thing: Thing, later: Sequence[LaterPicture] = ()
+) -> tuple[Obstacle, ...]:
     """Return what stands near the way from the newest view to the thing, in the world of its odometry.
+
+    later: pictures in which the thing was not seen any more.
 
     Only what was seen from two places is found, and nothing where pictures are no longer kept.
     """
     jpegs: dict[int, bytes] = {}
-    for sighting in located.sightings:
+    for frame_id in [each.frame_id for each in located.sightings] + [each.frame_id for each in later]:
         try:
-            jpegs[sighting.frame_id] = context.frames.get(sighting.frame_id).jpeg
+            jpegs[frame_id] = context.frames.get(frame_id).jpeg
         except FrameError:
             continue
-    return await context.compute.call(obstacles_in_views, located, thing, jpegs, context.description)
+    return await context.compute.call(obstacles_in_views, located, thing, jpegs, context.description, later)
 
 
 def obstacles_in_views(
-    located: LocatedPoint, thing: Thing, jpegs: Mapping[int, bytes], description: RobotDescription
+    located: LocatedPoint,
+    thing: Thing,
+    jpegs: Mapping[int, bytes],
+    description: RobotDescription,
+    later: Sequence[LaterPicture] = (),
 ) -> tuple[Obstacle, ...]:
     """Return what stands near the way to the thing by the pictures of the sightings that are kept (by frame
-    id), the nearest to the way first; a pure function.
+    id), and of `later` ones, the nearest to the way first; a pure function.
     """
     point = located.point_in_world
     if point is None:
         return ()
     kept = [each for i, each in enumerate(located.sightings) if i not in located.rejected_views]
-    views = standing_views(kept, located.base_from_camera, point, jpegs, description)
-    newest = located.sightings[-1].world_from_base
+    views = standing_views([*kept, *later], located.base_from_camera, point, jpegs, description)
+    newest = (later[-1] if later else located.sightings[-1]).world_from_base
     here, there, own = np.array([newest.x, newest.y]), *own_room(thing)
     others = _without_own(standing_points(views), there, own)
     found = [each for each in clustered(others) if _from(here, each.centre) > _UNDER_ROBOT]

@@ -1,5 +1,6 @@
 """Views of a located thing as small evened pictures, and how planes lead from one of them to the next."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from tapreach.geometry.camera import Camera
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize
 from tapreach.robot.config import RobotDescription
+from tapreach.tasks.fetch.later_pictures import LaterPicture
 from tapreach.tasks.sighting import Sighting
 from tapreach.vision.plane_sweep import Evened, evened_picture
 
@@ -21,13 +23,15 @@ _LEAST_BASELINE = 0.03
 """Ways between the views that are compared [m]."""
 _SECOND_LOOK = 0.2
 """Way before the last view from which it is looked once more [m]."""
+_LOOKING_ALIKE = math.cos(math.radians(28.0))
+"""Views whose directions differ by more have too little in common."""
 _UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
 class StandingView:
-    """A picture; matrix (3, 3) from what is in front of the camera to its pixels, shifted so that the thing
-    falls on where it was followed to; world_from_camera (4, 4) [m].
+    """A picture; matrix (3, 3) from what is in front of the camera to its pixels, shifted so that a thing
+    that was followed falls on where that was; world_from_camera (4, 4) [m].
     """
 
     picture: Evened
@@ -38,6 +42,11 @@ class StandingView:
     def place(self) -> FloatArray:
         """Where the camera is, (3,) [m]."""
         return self.world_from_camera[:3, 3]
+
+    @property
+    def ahead(self) -> FloatArray:
+        """The direction (3,) in which the camera looks."""
+        return self.world_from_camera[:3, 2]
 
     def directions(self, columns: NDArray[np.int_], rows: NDArray[np.int_]) -> FloatArray:
         """Return the lines of sight (n, 3) of pixels in the world, 1 m deep."""
@@ -67,7 +76,7 @@ class StandingView:
 
 
 def standing_views(
-    sightings: Sequence[Sighting],
+    sightings: Sequence[Sighting | LaterPicture],
     base_from_camera: RigidTransform,
     point_in_world: FloatArray,
     jpegs: Mapping[int, bytes],
@@ -87,10 +96,11 @@ def standing_views(
         if picture is None:
             continue
         pose = sighting.world_from_base.to_rigid() * base_from_camera
-        off = pose.inv().apply(point_in_world)
         matrix = pinhole.matrix()
-        followed_to = lens.normalise([sighting.pixel.to_array()])[0]
-        matrix[:2, 2] += np.diag(matrix)[:2] * (followed_to - off[:2] / off[2])
+        if sighting.pixel is not None:
+            off = pose.inv().apply(point_in_world)
+            followed_to = lens.normalise([sighting.pixel.to_array()])[0]
+            matrix[:2, 2] += np.diag(matrix)[:2] * (followed_to - off[:2] / off[2])
         views.append(StandingView(picture, matrix, pose.as_matrix()))
     return views
 
@@ -104,9 +114,11 @@ def references(views: Sequence[StandingView]) -> list[int]:
 
 
 def compared_with(views: Sequence[StandingView], reference: int) -> list[int]:
-    """Return the views with which one is compared: at some way from it, and from each other."""
+    """Return the views with which one is compared: at some way from it, and from each other,
+    looking the same way."""
     ways = np.array([float(np.linalg.norm(view.place - views[reference].place)) for view in views])
-    left = [i for i in range(len(views)) if ways[i] > _LEAST_BASELINE]
+    alike = [float(view.ahead @ views[reference].ahead) > _LOOKING_ALIKE for view in views]
+    left = [i for i in range(len(views)) if ways[i] > _LEAST_BASELINE and alike[i]]
     chosen: list[int] = []
     for wanted in _BASELINES:
         if left:

@@ -8,12 +8,14 @@ import numpy as np
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import LocatedPoint
+from tapreach.tasks.fetch.later_pictures import LaterPicture, later_pictures
 from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings
 from tapreach.tasks.fetch.outline import Outline
 from tapreach.tasks.fetch.remembered import Look, Remembered, after_look
 from tapreach.tasks.fetch.seen_obstacles import own_room, seen_obstacles
 from tapreach.tasks.fetch.sight import Sight
 from tapreach.tasks.fetch.thing import Thing
+from tapreach.tasks.sighting import Sighting, is_apart
 from tapreach.tasks.task import TaskContext
 
 _CLEAR_OF_ROBOT = 0.005
@@ -21,6 +23,8 @@ _CLEAR_OF_ROBOT = 0.005
 _LEAST_RADIUS = 0.01
 _FEWEST_VIEWS = 3
 """Fewer show nothing, and deny nothing."""
+_LOOK_APART, _TURN_APART = 0.03, 0.1
+"""A look from nearer to the last one [m, rad] is the same look."""
 _BY_THE_THING = 0.05
 """What one look alone shows so near the thing [m] may be its shadow, or its gleam on the floor."""
 
@@ -37,17 +41,28 @@ class SeenAround:
     newest: int | None = None
 
     async def look(self, context: TaskContext, located: LocatedPoint, thing: Thing) -> None:
-        """Take what the pictures of the sightings show; those that were looked at before say nothing new."""
-        frame_id = located.sightings[-1].frame_id
-        if frame_id == self.newest or len(located.sightings) < _FEWEST_VIEWS:
+        """Take what the pictures of the sightings show, and those taken since the thing was last seen; those
+        that were looked at before say nothing new.
+        """
+        later = later_pictures(context, located.sightings[-1])
+        views: list[Sighting | LaterPicture] = [*located.sightings, *later]
+        newest = views[-1]
+        if len(views) < _FEWEST_VIEWS or self._was_looked_at(newest.frame_id, newest.world_from_base):
             return
-        self.newest = frame_id
-        self.poses = {each.frame_id: each.world_from_base for each in located.sightings}
-        found = await seen_obstacles(context, located, thing)
+        self.newest = newest.frame_id
+        self.poses = {each.frame_id: each.world_from_base for each in views}
+        found = await seen_obstacles(context, located, thing, later)
         middle, radius = own_room(thing)
         goal = Obstacle("it", middle, middle, radius, 0.0)
-        look = Look(frame_id, self.poses, Sight.of(context.description), goal)
+        look = Look(newest.frame_id, self.poses, Sight.of(context.description), goal)
         self.known = after_look(self.known, found, look)
+
+    def _was_looked_at(self, frame_id: int, here: PlanarPose) -> bool:
+        """Tell whether the newest look was at this picture, or from there: at rest nothing new is seen."""
+        if self.newest is None or self.poses is None:
+            return False
+        before = self.poses[self.newest]
+        return frame_id == self.newest or not is_apart(before, here, _LOOK_APART, _TURN_APART)
 
     def in_world(self) -> tuple[Obstacle, ...]:
         """Return all that was seen where it is now known to stand."""
@@ -80,20 +95,33 @@ class Seen:
         return replace(self.obstacle, spread=0.0)
 
 
-def to_plan_round(told: Sequence[Obstacle], seen: Sequence[Seen]) -> list[tuple[Obstacle, ...]]:
+@dataclass(frozen=True)
+class KeptClearOf:
+    """What a way keeps clear of; `drifts`: also of what odometry may be off by there."""
+
+    obstacles: tuple[Obstacle, ...]
+    drifts: bool = True
+
+
+def to_plan_round(told: Sequence[Obstacle], seen: Sequence[Seen]) -> list[KeptClearOf]:
     """Return what a way is sought around, until one is found: all, as large as it may be; what was seen just
-    as it was seen; only what was seen more than once; only what was told.
+    as it was seen, then as if no drift came to it, for each leg is planned anew; so only what was seen more
+    than once; only what was told.
 
     What is seen may be wrong, and shall not end a fetch.
     """
+    if not seen:
+        return [KeptClearOf(tuple(told))]
+    all_squeezed = tuple(each.squeezed for each in seen)
+    sure = tuple(each.squeezed for each in seen if each.is_sure)
     ways = [
-        tuple(each.obstacle for each in seen),
-        tuple(each.squeezed for each in seen),
-        tuple(each.squeezed for each in seen if each.is_sure),
-        (),
+        KeptClearOf((*told, *(each.obstacle for each in seen))),
+        KeptClearOf((*told, *all_squeezed)),
+        KeptClearOf((*told, *all_squeezed), drifts=False),
     ]
-    different = [way for i, way in enumerate(ways) if i < 2 or len(way) < len(ways[i - 1])]
-    return [(*told, *way) for way in (different if seen else ways[-1:])]
+    if 0 < len(sure) < len(seen):
+        ways.append(KeptClearOf((*told, *sure), drifts=False))
+    return [*ways, KeptClearOf(tuple(told))]
 
 
 def _beside(obstacle: Obstacle, clearance: float) -> Obstacle | None:
