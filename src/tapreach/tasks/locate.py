@@ -23,7 +23,7 @@ from tapreach.tasks.follower import Follower, TargetLost, thinned
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.known_place import KnownPlace
 from tapreach.tasks.locate_end import End, closing_reason, closing_sentence, has_helped, is_worthwhile
-from tapreach.tasks.locate_watch import BLOCKED, SLIPPING, MoveWatch, is_accurate
+from tapreach.tasks.locate_watch import BLOCKED, SLIPPING, MoveWatch, is_accurate, is_blocked
 from tapreach.tasks.move_choice import Choice, Room, planned_move
 from tapreach.tasks.online import Seen, online_picture
 from tapreach.tasks.planned_move import PlannedMove
@@ -143,13 +143,24 @@ class Locating:
         if self._known is not None:
             await self._renew(with_advice=False)
 
-    async def drive(self, motion: Coroutine[Any, Any, object]) -> None:
-        """Go on following and estimating while `motion` is carried out, and look once it has ended.
+    async def drive(self, motion: Coroutine[Any, Any, object]) -> str:
+        """Go on following and estimating while `motion` is carried out, and look once it has ended; end it
+        where something blocks the robot, and return that, '' otherwise.
 
         Raises TargetLost when the place is not seen any more and not known, MotionInterrupted, LinkLost.
         """
-        await self._follower.during(motion, self._keep_up)
+        begun = self._follower.frame_id
+        self._enough.clear()
+        await self._follower.during(self._until_enough(motion), lambda: self._keep_up_while_free(begun))
+        if self._enough.is_set():
+            await self._context.pilot.move(PlanarStep(0.0, 0.0))
         await self._look()
+        return BLOCKED if self._enough.is_set() else ""
+
+    async def _keep_up_while_free(self, begun: int) -> None:
+        await self._keep_up()
+        if is_blocked([each for each in self._follower.sightings if each.frame_id > begun]):
+            self._enough.set()
 
     async def _keep_up(self) -> None:
         """Renew the picture with the frame just followed; when the machine is behind following is first."""

@@ -1,5 +1,6 @@
 """Why a move that is being made for locating should end here and now."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,9 +80,15 @@ class MoveWatch:
         return min(across, down, 1.0 - across, 1.0 - down)
 
 
-def _obstruction(sightings: list[Sighting]) -> str:
+def is_blocked(sightings: Sequence[Sighting]) -> bool:
+    """Tell whether by the newest way that the background shows the wheels turn and nothing moves."""
     ways = [each.way for each in sightings[-_RECENT:] if each.way is not None]
-    if ways and ways[-1].stands_still:
+    return bool(ways) and ways[-1].stands_still
+
+
+def _obstruction(sightings: list[Sighting]) -> str:
+    if is_blocked(sightings):
         return BLOCKED
+    ways = [each.way for each in sightings[-_RECENT:] if each.way is not None]
     slipped = [way.knowledge.has_slipped for way in ways[-_SLIPS:]]
     return SLIPPING if len(slipped) == _SLIPS and all(slipped) else ""

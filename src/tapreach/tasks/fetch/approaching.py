@@ -6,6 +6,7 @@ import numpy as np
 
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch.approach import Approach, Leg
+from tapreach.tasks.fetch.blocked import back_off_from
 from tapreach.tasks.fetch.followed_from_here import follow_from_here, has_grown
 from tapreach.tasks.fetch.glance import glance
 from tapreach.tasks.fetch.looking import ACCURACY, MOST_LOOKS, in_words, measure, previewed
@@ -42,9 +43,11 @@ async def approach(run: FetchRun) -> Ended:
         back = None if leg.sees_thing or not run.ways.renews_on_way else glance(run, unseen_way)
         leg = leg if back is None else back
         try:
-            await drive(run, leg)
+            blocked = await drive(run, leg)
         except TargetLost as lost:
             return await _anew(run) or Ended(Outcome.LOST, str(lost))
+        if blocked and (ended := await back_off_from(run, blocked)):
+            return ended
         await measure(run)
         unseen_way = unseen_way + abs(leg.step.advance) if _loss(run) and back is None else 0.0
         if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run)):
@@ -125,12 +128,15 @@ def next_leg(approach: Approach) -> Leg | None:
     return None
 
 
-async def drive(run: FetchRun, leg: Leg) -> None:
-    """Drive a leg with the arm folded, following the thing and estimating on (see Ways). Raises
-    TargetLost.
+async def drive(run: FetchRun, leg: Leg) -> str:
+    """Drive a leg with the arm folded, following the thing and estimating on (see Ways); return what blocks
+    the robot, '' for nothing. Raises TargetLost.
     """
     assert run.locating is not None
     run.remember(way=(*run.memory.way, run.here))
     folded = run.context.description.arm.standard.pose()
     motion = run.context.pilot.move(leg.step, folded)
-    await (run.locating.drive(motion) if run.ways.renews_on_way else motion)
+    if run.ways.renews_on_way:
+        return await run.locating.drive(motion)
+    await motion
+    return ""

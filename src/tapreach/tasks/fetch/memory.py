@@ -20,7 +20,7 @@ class FetchMemory:
     the first. seen_again: where the thing was seen after a miss, None where it was not. gripped_at: the arm's
     pose when the claw closed, None while nothing has been gripped. zero: the arm as it was seen. way: where
     the base has been since. seeks_another_side: from near it was too wide for the claw as it was seen.
-    is_agreed: the operator was asked, and agreed.
+    was_blocked: something on the way has blocked the robot. is_agreed: the operator was asked, and agreed.
     """
 
     tap: Tap
@@ -36,4 +36,5 @@ class FetchMemory:
     zero: ArmZero | None = None
     way: tuple[PlanarPose, ...] = ()
     seeks_another_side: bool = False
+    was_blocked: bool = False
     is_agreed: bool = False

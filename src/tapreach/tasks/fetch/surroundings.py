@@ -11,7 +11,7 @@ from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.fetch.later_pictures import LaterPicture, later_pictures
 from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings
 from tapreach.tasks.fetch.outline import Outline
-from tapreach.tasks.fetch.remembered import Look, Remembered, after_look
+from tapreach.tasks.fetch.remembered import SURE_LOOKS, Look, Remembered, after_look
 from tapreach.tasks.fetch.seen_obstacles import own_room, seen_obstacles
 from tapreach.tasks.fetch.sight import Sight
 from tapreach.tasks.fetch.thing import Thing
@@ -25,6 +25,9 @@ _FEWEST_VIEWS = 3
 """Fewer show nothing, and deny nothing."""
 _LOOK_APART, _TURN_APART = 0.03, 0.1
 """A look from nearer to the last one [m, rad] is the same look."""
+_BUMPED_RADIUS = 0.04
+"""Half of how wide that is taken to be what blocked the robot [m]."""
+_NO_VIEW = -1
 _BY_THE_THING = 0.05
 """What one look alone shows so near the thing [m] may be its shadow, or its gleam on the floor."""
 
@@ -63,6 +66,12 @@ class SeenAround:
             return False
         before = self.poses[self.newest]
         return frame_id == self.newest or not is_apart(before, here, _LOOK_APART, _TURN_APART)
+
+    def bumped_into(self, here: PlanarPose, front: float) -> None:
+        """Remember what the base pushes against in vain at `here`, `front` [m] ahead of its wheel axis."""
+        place = np.array([front + _BUMPED_RADIUS, 0.0])
+        unseen = Obstacle("what blocked the robot", place, place, _BUMPED_RADIUS, 0.0)
+        self.known = (Remembered(unseen, _NO_VIEW, here, SURE_LOOKS), *self.known)
 
     def in_world(self) -> tuple[Obstacle, ...]:
         """Return all that was seen where it is now known to stand."""
