@@ -42,6 +42,8 @@ async def approach(run: FetchRun) -> Ended:
             return Ended(Outcome.DONE, "near enough for the last look")
         back = None if leg.sees_thing or not run.ways.renews_on_way else glance(run, unseen_way)
         leg = leg if back is None else back
+        if run.ways.renews_on_way and leg.sees_thing and has_grown(run):
+            await follow_from_here(run, ACCURACY)
         try:
             blocked = await drive(run, leg)
         except TargetLost as lost:
@@ -52,8 +54,6 @@ async def approach(run: FetchRun) -> Ended:
         unseen_way = unseen_way + abs(leg.step.advance) if _loss(run) and back is None else 0.0
         if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run)):
             return anew
-        if run.ways.renews_on_way and has_grown(run):
-            await follow_from_here(run, ACCURACY)
     return Ended(Outcome.CANNOT, await _not_arrived(run))
 
 

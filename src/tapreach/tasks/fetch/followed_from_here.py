@@ -2,7 +2,8 @@
 
 What was tapped from far is a few pixels, which fit many places of what they are part of: the place slides
 over the thing while the robot drives up to it, as if it were ever a little farther away. Seen from near it is
-held well; and which spot of the thing it is does not matter to the claw.
+held well; and which spot of the thing it is does not matter to the claw. Only further views in which it is
+seen tell its distance as well as the old ones did.
 """
 
 from tapreach.tasks.fetch.looking_again import keep_what_is_known, still_followed

@@ -18,8 +18,9 @@ WIDE_SHARE, NARROW_SHARE = 0.9, 0.45
 """Of the widest opening: what the claw is opened to and closed to while it is looked at. Four fingers equally
 far apart could be taken for each other.
 """
-_AHEAD = np.arange(0.16, 0.24, 0.02)
-_LEFT = np.arange(-0.09, 0.091, 0.03)
+FARTHEST_AHEAD, FARTHEST_LEFT = 0.22, 0.09
+_AHEAD = np.arange(0.16, FARTHEST_AHEAD + 0.01, 0.02)
+_LEFT = np.arange(-FARTHEST_LEFT, FARTHEST_LEFT + 0.001, 0.03)
 _UP = np.array([0.05, 0.06, 0.07, 0.085])
 """Where the tips may be: ahead and to the left of the camera, above the floor [m]. Servos that are off by 4
 degrees bring them 2 cm lower.
