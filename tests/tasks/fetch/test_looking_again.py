@@ -198,7 +198,7 @@ def tapped_unseen(sd: float, here: PlanarPose = HERE) -> tuple[Tap | None, Fetch
     run = run_with(known(sd))
     run.context.poses.add(run.context.clock.now_ns() + 2, here)
     run.context.frames.add(Frame(7, 0, 0, ROBOT.camera.model().size, b""))
-    return tap_unseen(run), run
+    return asyncio.run(tap_unseen(run)), run
 
 
 def test_thing_that_looks_otherwise_is_tapped_on_its_front_where_that_is_surely_met() -> None:

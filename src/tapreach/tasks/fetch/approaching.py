@@ -95,7 +95,7 @@ async def _anew(run: FetchRun) -> Ended | None:
     """End with locating the thing from here, if it is found in the picture, and not too often before."""
     if not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
         return None
-    if (still_followed(run) or await tap_again(run) or tap_unseen(run)) is None:
+    if (still_followed(run) or await tap_again(run) or await tap_unseen(run)) is None:
         return None
     run.remember(looks=run.memory.looks + 1)
     return Ended(Outcome.UNSURE, f"{_known_to(run)}: located anew")

@@ -2,13 +2,18 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.tasks.fetch.thing import ThingSize
 from tapreach.tasks.known_place import KnownPlace
+from tapreach.vision.own_colours import OwnColours
 
 PUSHED_SD, PUSHED_UP_SD = 0.03, 0.01
 """How far the claw may have pushed the thing that it tried to grip, or let it fall, one sigma [m]."""
+_USUAL_HALF = 0.03
+"""Half of how large a thing is that was never measured [m]."""
 
 
 @dataclass(frozen=True)
@@ -23,13 +28,27 @@ class Appearance:
 @dataclass(frozen=True, eq=False)
 class KnownThing:
     """place: of the tapped spot. size: None where it was never measured; its middle is told by `axis_offset`
-    (3,) [m] from the tapped spot. appearance: None where no picture of it is left.
+    (3,) [m] from the tapped spot. appearance: None where no picture of it is left. colours:
+    its own, None where they could not be told.
     """
 
     place: KnownPlace
     size: ThingSize | None = None
     axis_offset: FloatArray | None = None
     appearance: Appearance | None = None
+    colours: OwnColours | None = None
+
+    @property
+    def middle(self) -> FloatArray:
+        """The thing's middle (3,) [m]; the tapped spot where that is not known."""
+        return self.place.point_in_world + (0.0 if self.axis_offset is None else self.axis_offset)
+
+    @property
+    def half_size(self) -> FloatArray:
+        """Half its width and half its height (2,) [m], usual ones where it was never measured."""
+        if self.size is None:
+            return np.full(2, _USUAL_HALF)
+        return np.array([self.size.width, self.size.height]) / 2.0
 
     def pushed(self) -> "KnownThing":
         """Return it after the claw was around it, or tried to be: it may stand, or lie, elsewhere."""

@@ -10,6 +10,7 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.tasks.aiming import aimed
 from tapreach.tasks.camera_delay import know_delay
+from tapreach.tasks.fetch.by_colours import learn_colours
 from tapreach.tasks.fetch.fetch_state import FetchPlan, Mode
 from tapreach.tasks.fetch.looking_again import (
     is_where_it_was,
@@ -93,6 +94,7 @@ async def _look_once(run: FetchRun) -> Ended:
     point = run.thing().point_in_world
     run.measured(run.locating.size or NoSize("it was not measured"), point)
     keep_what_is_known(run)
+    await learn_colours(run)
     return Ended(Outcome.DONE, sentence)
 
 
@@ -123,6 +125,7 @@ async def measure(run: FetchRun) -> None:
         size = await size_of(run.context, locating.estimate, tap.box if is_drawn_in else None)
         run.measured(size, point)
     keep_what_is_known(run)
+    await learn_colours(run)
 
 
 async def judge_reach(run: FetchRun) -> Ended:
@@ -190,7 +193,7 @@ async def _tap(run: FetchRun) -> Tap | None:
     memory = run.memory
     if memory.known is None:
         return memory.tap
-    tap = still_followed(run) or await tap_again(run) or memory.seen_again or tap_unseen(run)
+    tap = still_followed(run) or await tap_again(run) or memory.seen_again or await tap_unseen(run)
     if tap is not None:
         run.remember(tap=tap, seen_again=None)
     return tap

@@ -12,11 +12,13 @@ import numpy as np
 
 from tapreach.errors import FrameError
 from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.messages import Frame
 from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold
+from tapreach.tasks.fetch.by_colours import is_of_its_colours, tap_by_colours
 from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.known_thing import Appearance, KnownThing
 from tapreach.tasks.fetch.run import FetchRun
@@ -34,8 +36,6 @@ _SAME_SIGMAS = 4.0
 """What is located farther from where it was known to be is another thing."""
 _AT_REST_PX = 5.0
 """A camera that rocks, and a picture's own errors, one sigma [px]."""
-_USUAL_HALF = 0.03
-"""Half of how large a thing is that was never measured [m]."""
 _LEAST_STEP, _MOST_STEP = 0.06, 0.2
 _STEP_M = 0.002
 _SURELY_MET = 0.6
@@ -52,7 +52,8 @@ def keep_what_is_known(run: FetchRun) -> None:
     before = run.memory.known
     seen = _appearance(run, estimate) or (before.appearance if before is not None else None)
     place = KnownPlace(thing.point_in_world, thing.point_cov_in_world, here)
-    run.remember(known=KnownThing(place, size, run.axis_offset, seen))
+    colours = before.colours if before is not None else None
+    run.remember(known=KnownThing(place, size, run.axis_offset, seen, colours))
 
 
 async def locate_again(run: FetchRun, locating: Locating) -> str:
@@ -79,25 +80,32 @@ def still_followed(run: FetchRun) -> Tap | None:
 
 
 async def tap_again(run: FetchRun) -> Tap | None:
-    """Return a tap on the thing where it is seen in a new picture; None where it is not.
-
-    Raises LinkLost when the camera is silent.
+    """Return a tap on the thing where it is seen in a new picture, by its own colours or else by how it
+    looked; None where it is not. Raises LinkLost when the camera is silent.
     """
-    context, known = run.context, run.memory.known
-    if known is None or known.appearance is None:
+    if run.memory.known is None:
         return None
     await _out_of_the_picture(run)
-    frame = await _frame_from_now_on(context)
-    here = await pose_at(context, frame.captured_ns)
-    there = expected(known, here, context.description)
-    if there is None:
+    frame = await _frame_from_now_on(run.context)
+    here = await pose_at(run.context, frame.captured_ns)
+    return await tap_by_colours(run, frame, here) or await _tap_by_looks(run, run.memory.known, frame, here)
+
+
+async def _tap_by_looks(run: FetchRun, known: KnownThing, frame: Frame, here: PlanarPose) -> Tap | None:
+    """Return a tap where a picture taken at `here` shows it as it looked before, if it has its colours."""
+    context, seen = run.context, known.appearance
+    there = expected(known, here, context.description) if seen is not None else None
+    if seen is None or there is None:
         return None
-    half = _half_px(known, known.appearance, context.description)
-    found = await context.compute.call(_find, known.appearance, half, frame.jpeg, there)
+    found = await context.compute.call(
+        _find, seen, _half_px(known, seen, context.description), frame.jpeg, there
+    )
     if found is None:
         return None
-    u, v = map(float, found.pixel)
-    return Tap(frame.frame_id, u, v)
+    pixel = Pixel(*map(float, found.pixel))
+    if not await is_of_its_colours(run, frame, pixel, here):
+        return None
+    return Tap(frame.frame_id, pixel.u, pixel.v)
 
 
 async def _frame_from_now_on(context: TaskContext) -> Frame:
@@ -110,9 +118,10 @@ async def _frame_from_now_on(context: TaskContext) -> Frame:
             return newest
 
 
-def tap_unseen(run: FetchRun) -> Tap | None:
+async def tap_unseen(run: FetchRun) -> Tap | None:
     """Return a tap in the newest picture on where the thing's front should be, for one that looks otherwise
-    from here; None where it is not known well enough to be surely met, or is out of the picture.
+    from here; None where it is not known well enough to be surely met, is out of the picture, or where the
+    picture shows other colours.
 
     From then on that front is the spot that is known.
     """
@@ -121,11 +130,12 @@ def tap_unseen(run: FetchRun) -> Tap | None:
         return None
     place = known.place.seen_from(run.here, run.context.description)
     half = known.size.width / 2.0
-    middle = place.point_in_world + known.axis_offset
-    ahead, across = _along_and_across(run.here, middle)
-    front = middle - half * ahead
+    ahead, across = _along_and_across(run.here, known.middle)
+    front = known.middle - half * ahead
     pixel = pixel_of(run.context, front)
     if pixel is None or float(across @ place.cov_in_world @ across) > (_SURELY_MET * half) ** 2:
+        return None
+    if not await is_of_its_colours(run, frame, pixel, run.here):
         return None
     run.remember(known=replace(known, place=replace(place, point_in_world=front), axis_offset=half * ahead))
     return Tap(frame.frame_id, pixel.u, pixel.v)
@@ -182,8 +192,7 @@ def _scales(likeliest: float, relative_sd: float) -> tuple[float, ...]:
 
 
 def _half_px(known: KnownThing, seen: Appearance, description: RobotDescription) -> float:
-    half = _USUAL_HALF if known.size is None else max(known.size.width, known.size.height) / 2.0
-    return description.camera.fx * half / seen.distance
+    return description.camera.fx * float(known.half_size.max()) / seen.distance
 
 
 def _find(seen: Appearance, half_px: float, jpeg: bytes, there: Expected) -> SeenAgain | None:
