@@ -1,0 +1,135 @@
+"""The colours of a thing are learned where it was tapped, and it is tapped where they are seen next."""
+
+import asyncio
+import math
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from tapreach.geometry.pixel import Pixel
+from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
+from tapreach.robot.messages import Frame
+from tapreach.tasks.estimating import estimate
+from tapreach.tasks.fetch.by_colours import (
+    expected_box,
+    is_of_its_colours,
+    learn_colours,
+    tap_by_colours,
+)
+from tapreach.tasks.fetch.fetch_state import Mode
+from tapreach.tasks.fetch.known_thing import KnownThing
+from tapreach.tasks.fetch.memory import FetchMemory
+from tapreach.tasks.fetch.run import FetchRun
+from tapreach.tasks.known_place import KnownPlace
+from tapreach.tasks.optics import optics_of, points_in_camera
+from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.task import Tap
+from tasks.fetch.worlds import ROBOT, size_at
+from tasks.rig import bare_context
+
+HERE = PlanarPose(0.05, 0.0, 0.0)
+MIDDLE = np.array([0.6, 0.03, 0.05])
+SPOT = MIDDLE - [0.025, 0.0, 0.0]
+"""On the front of a thing 5 cm wide and 10 cm high."""
+RED, GREEN = (30, 30, 190), (60, 150, 40)
+
+
+def pixel_of(point: np.ndarray, here: PlanarPose = HERE) -> np.ndarray:
+    in_camera = points_in_camera(point[None], here, ROBOT.camera)
+    return np.asarray(optics_of(ROBOT.camera)[0].project(in_camera).pixels[0])
+
+
+def frame(
+    middle: np.ndarray, colour: tuple[int, int, int], here: PlanarPose = HERE, number: int = 0
+) -> Frame:
+    """A picture from `here` of a grey room with a box of one colour about `middle`."""
+    size = optics_of(ROBOT.camera)[0].size
+    picture = np.full((size.height, size.width, 3), 120, np.uint8)
+    corners = [pixel_of(middle + np.array(each), here) for each in ((0.0, 0.025, 0.05), (0.0, -0.025, -0.05))]
+    cv2.rectangle(picture, *(tuple(map(int, np.round(each))) for each in corners), colour, -1)
+    jpeg = bytes(cv2.imencode(".jpg", picture)[1])
+    return Frame(number, number, number, size, jpeg)
+
+
+class Followed:
+    """What a follower that sees the thing is to a fetch."""
+
+    def __init__(self, sightings: list[Sighting], doubt: str = "") -> None:
+        self.sightings, self.loss, self.doubt, self.last = sightings, "", doubt, sightings[-1]
+
+
+class Located:
+    """What a locating that has ended is to a fetch."""
+
+    def __init__(self, follower: Followed) -> None:
+        self.follower, self.estimate = follower, estimate(follower.sightings, ROBOT, False)
+
+
+def run_after_look(colours: tuple[tuple[int, int, int], ...], doubt: str = "") -> FetchRun:
+    """A fetch that has followed a thing, shown with the colours in the views of the look."""
+    context = bare_context()
+    context.poses.add(1, HERE)
+    place = KnownPlace(SPOT, 0.02**2 * np.eye(3), HERE)
+    known = KnownThing(place, replace(size_at(0.6, 0.03), seen_along=0.0), MIDDLE - SPOT)
+    run = FetchRun(context, FetchMemory(Tap(1, 1.0, 1.0), 1, Mode.GO, known=known), (), None)  # type: ignore[arg-type]
+    views = []
+    for i, colour in enumerate(colours):
+        pose = HERE.after(PlanarStep(0.0, -0.1 * (len(colours) - 1 - i)))
+        context.frames.add(frame(MIDDLE, colour, pose, i))
+        views.append(Sighting(i, i, Pixel(*map(float, pixel_of(SPOT, pose))), 0.4, 1.0, pose))
+    run.locating = Located(Followed(views, doubt))  # type: ignore[assignment]
+    asyncio.run(learn_colours(run))
+    return run
+
+
+def tapped(run: FetchRun, seen: Frame, here: PlanarPose = HERE) -> Tap | None:
+    return asyncio.run(tap_by_colours(run, seen, here))
+
+
+def test_thing_is_tapped_where_its_colours_are_and_known_there_from_then_on() -> None:
+    run = run_after_look((RED, RED, RED))
+    moved = MIDDLE + np.array([0.0, 0.04, 0.0])
+    tap = tapped(run, frame(moved, RED))
+    assert tap is not None
+    assert abs(tap.u - pixel_of(moved)[0]) < 15.0 and abs(tap.v - pixel_of(moved)[1]) < 25.0
+    known = run.memory.known
+    assert known is not None
+    np.testing.assert_allclose(pixel_of(known.place.point_in_world), (tap.u, tap.v), atol=0.01)
+    np.testing.assert_allclose(known.middle[:2], moved[:2], atol=0.012)
+
+
+@pytest.mark.parametrize("seen", [frame(MIDDLE, GREEN), Frame(0, 0, 0, ROBOT.camera.model().size, b"")])
+def test_thing_of_another_colour_or_in_a_broken_picture_is_not_tapped(seen: Frame) -> None:
+    run = run_after_look((RED, RED, RED))
+    before = run.memory.known
+    assert tapped(run, seen) is None
+    assert run.memory.known is before
+
+
+def test_thing_that_would_be_out_of_the_picture_is_not_sought() -> None:
+    run = run_after_look((RED, RED, RED))
+    assert run.memory.known is not None
+    away = replace(HERE, heading=math.pi)
+    assert expected_box(run.memory.known, away, ROBOT) is None
+    assert tapped(run, frame(MIDDLE, RED), away) is None
+
+
+def test_colours_are_those_that_were_tapped_not_those_of_what_is_followed_by_mistake() -> None:
+    run = run_after_look((RED, RED, GREEN))
+    assert tapped(run, frame(MIDDLE, GREEN)) is None
+    assert tapped(run, frame(MIDDLE, RED)) is not None
+
+
+def test_what_is_doubtful_by_now_has_still_told_its_colours_where_it_was_tapped() -> None:
+    assert tapped(run_after_look((RED, RED, RED), "it looks alike at several distances"), frame(MIDDLE, RED))
+
+
+def test_spot_is_judged_by_the_colours_around_it_and_passes_while_none_are_known() -> None:
+    run, spot = run_after_look((RED, RED, RED)), Pixel(*map(float, pixel_of(MIDDLE)))
+    assert asyncio.run(is_of_its_colours(run, frame(MIDDLE, RED), spot, HERE))
+    assert not asyncio.run(is_of_its_colours(run, frame(MIDDLE, GREEN), spot, HERE))
+    run.remember(known=replace(run.memory.known, colours=None))
+    assert asyncio.run(is_of_its_colours(run, frame(MIDDLE, GREEN), spot, HERE))
+    assert tapped(run, frame(MIDDLE, RED)) is None
