@@ -12,12 +12,8 @@ from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.robot.messages import Frame
 from tapreach.tasks.estimating import estimate
-from tapreach.tasks.fetch.by_colours import (
-    expected_box,
-    is_of_its_colours,
-    learn_colours,
-    tap_by_colours,
-)
+from tapreach.tasks.fetch.by_colours import is_of_its_colours, learn_colours, tap_by_colours
+from tapreach.tasks.fetch.expected_box import expected_box
 from tapreach.tasks.fetch.fetch_state import Mode
 from tapreach.tasks.fetch.known_thing import KnownThing
 from tapreach.tasks.fetch.memory import FetchMemory

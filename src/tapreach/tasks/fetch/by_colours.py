@@ -1,35 +1,22 @@
 """A thing's own colours: learned while it is seen, and used to find it where it looks otherwise by now."""
 
-import math
 from dataclasses import replace
 
-import cv2
-import numpy as np
-
 from tapreach.errors import FrameError
-from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import ImageSize, Pixel
 from tapreach.geometry.pixel_box import PixelBox
 from tapreach.geometry.planar_motion import PlanarPose
-from tapreach.robot.config import RobotDescription
 from tapreach.robot.messages import Frame
+from tapreach.tasks.fetch.expected_box import expected_box, known_at_spot, projected
 from tapreach.tasks.fetch.known_thing import KnownThing
 from tapreach.tasks.fetch.run import FetchRun
-from tapreach.tasks.optics import optics_of
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.task import Tap
 from tapreach.vision.extent_place import place_to_follow
-from tapreach.vision.image_io import BrokenPicture, decode_color
+from tapreach.vision.image_io import BrokenPicture, decode_color, decode_gray
 from tapreach.vision.own_colours import OwnColours, has_colours, own_colours
 from tapreach.vision.seen_again_colours import ExpectedBox, box_by_colours
 
-_AT_REST_PX = 5.0
-"""A camera that rocks, and a picture's own errors, one sigma [px]."""
-_LEAST_SCALE, _MOST_SCALE = 0.1, 0.25
-"""By how much nearer or farther it may be, at least and at most, one sigma."""
-_NEAREST = 0.08
-"""Nearer to the camera [m] the whole thing is never in the picture."""
-_STEP_M = 0.002
 _SURELY_ITS = 0.5
 """So much of the thing around a spot of it is its own."""
 
@@ -52,7 +39,7 @@ async def learn_colours(run: FetchRun) -> None:
 async def _colours_in(run: FetchRun, known: KnownThing, sighting: Sighting) -> OwnColours | None:
     """Return the colours known with those that a sighting shows."""
     description, here = run.context.description, sighting.world_from_base
-    spot = _projected(known.place.point_in_world, here, description)
+    spot = projected(known.place.point_in_world, here, description)
     there = expected_box(known, here, description)
     if spot is None or there is None:
         return known.colours
@@ -88,65 +75,19 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
     if found is None:
         return None
     box, spot = found
-    run.remember(known=_at_spot(known, spot, box, here, description))
+    run.remember(known=known_at_spot(known, spot, box, here, description))
     return Tap(frame.frame_id, spot.u, spot.v)
 
 
 def _found(jpeg: bytes, colours: OwnColours, there: ExpectedBox) -> tuple[PixelBox, Pixel] | None:
     """Return the box around it, and the place in it that is followed best."""
-    picture = decode_color(jpeg)
-    box = None if isinstance(picture, BrokenPicture) else box_by_colours(picture, colours, there)
-    if box is None or isinstance(picture, BrokenPicture):
+    picture, gray = decode_color(jpeg), decode_gray(jpeg)
+    if isinstance(picture, BrokenPicture) or isinstance(gray, BrokenPicture):
         return None
-    gray = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), np.uint8)
-    return box, place_to_follow(gray, box.within(ImageSize(*reversed(gray.shape))))
-
-
-def expected_box(known: KnownThing, here: PlanarPose, description: RobotDescription) -> ExpectedBox | None:
-    """Return where all of the thing should be in a picture taken at `here`; None where its middle would not
-    be in it.
-    """
-    place, middle = known.place.seen_from(here, description), known.middle
-    pixel = _projected(middle, here, description)
-    beside = [_projected(middle + _STEP_M * axis, here, description) for axis in np.eye(3)]
-    camera, mount, _ = optics_of(description.camera)
-    if pixel is None or any(each is None for each in beside) or not Pixel(*pixel).is_inside(camera.size):
+    box = box_by_colours(picture, colours, there)
+    if box is None:
         return None
-    by_point = (np.array(beside) - pixel).T / _STEP_M
-    covariance = by_point @ place.cov_in_world @ by_point.T + _AT_REST_PX**2 * np.eye(2)
-    depth = float((here.to_rigid() * mount).inv().apply(middle)[2])
-    distance_sd = math.sqrt(float(np.linalg.eigvalsh(place.cov_in_world)[-1]))
-    step = 1.0 + min(max(distance_sd / depth, _LEAST_SCALE), _MOST_SCALE)
-    half_width, half_height = camera.fx / depth * known.half_size
-    scales = tuple(step**power for power in (0, -1, 1, -2, 2))
-    return ExpectedBox(pixel, covariance, float(half_width), float(half_height), scales)
-
-
-def _projected(point: FloatArray, here: PlanarPose, description: RobotDescription) -> FloatArray | None:
-    """Return where a point (3,) [m] falls, (2,) [px], in the picture or beside it; None nearer than 8 cm."""
-    camera, mount, _ = optics_of(description.camera)
-    in_camera = (here.to_rigid() * mount).inv().apply(point)
-    projection = camera.project(in_camera[None])
-    return projection.pixels[0] if in_camera[2] > _NEAREST and projection.is_valid[0] else None
-
-
-def _at_spot(
-    known: KnownThing, spot: Pixel, box: PixelBox, here: PlanarPose, description: RobotDescription
-) -> KnownThing:
-    """Return the thing known by a spot on its front, seen at `spot`, with its middle in the middle of `box`;
-    its distance is as it was.
-    """
-    camera, mount, _ = optics_of(description.camera)
-    world_from_camera = here.to_rigid() * mount
-    origin = world_from_camera.translation
-    ways = world_from_camera.rotation.apply(camera.unproject([spot.to_array(), box.middle.to_array()]))
-    to_spot, to_middle = ways / np.hypot(ways[:, 0], ways[:, 1])[:, None]
-    distance = float(np.hypot(*(known.middle - origin)[:2]))
-    half = known.size.width / 2.0 if known.size is not None else 0.0
-    point = origin + (distance - half) * to_spot
-    place = replace(known.place.seen_from(here, description), point_in_world=point)
-    offset = origin + distance * to_middle - point
-    return replace(known, place=place, axis_offset=None if known.axis_offset is None else offset)
+    return box, place_to_follow(gray, box.within(ImageSize(gray.shape[1], gray.shape[0])))
 
 
 async def is_of_its_colours(run: FetchRun, frame: Frame, pixel: Pixel, here: PlanarPose) -> bool:
