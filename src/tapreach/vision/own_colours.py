@@ -44,6 +44,10 @@ class OwnColours:
         pixels = self.pixels + other.pixels
         return OwnColours((self.pixels * self.shares + other.pixels * other.shares) / pixels, pixels)
 
+    def common(self, other: "OwnColours") -> float:
+        """Return how much they have in common, 0 to 1: the Bhattacharyya coefficient of the shares."""
+        return float(np.sqrt(self.shares * other.shares).sum())
+
 
 def own_colours(picture: Color, box: PixelBox) -> OwnColours | None:
     """Return the colours of what fills `box` that are not those around it; None where it has hardly any."""

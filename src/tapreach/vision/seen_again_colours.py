@@ -11,7 +11,7 @@ import numpy as np
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel_box import PixelBox
 from tapreach.vision.image_io import Color
-from tapreach.vision.own_colours import OwnColours, evidence
+from tapreach.vision.own_colours import OwnColours, evidence, own_colours
 
 _WITHIN = 3.0
 """Sigmas around the expected place in which it is sought."""
@@ -21,7 +21,11 @@ _LEAST_HALF, _LEAST_STRIP = 4.0, 2.0
 """[px]"""
 _LEAST, _CLEARLY = 1.5, 0.4
 """Log odds by which its inside differs from what is around it, and by how much more than anywhere else."""
-_PER_SIGMA = 0.05
+_LEAST_COMMON = 0.3
+"""So much its colours there have in common with those known (Bhattacharyya's coefficient): a white cup is not
+a red one with white dots, but a ball may show other stripes.
+"""
+_PER_SIGMA = 0.15
 """What a squared sigma off the expected place takes from them."""
 _APART = 1.5
 """What overlaps the best place, in half sizes, is no other place."""
@@ -65,7 +69,9 @@ def box_by_colours(picture: Color, colours: OwnColours, there: ExpectedBox) -> P
     same = (np.abs(rows - v) < _APART * down)[:, None] & (np.abs(columns - u) < _APART * across)[None, :]
     if best < _LEAST or best - float(np.where(same, _NOWHERE, fits).max()) < _CLEARLY:
         return None
-    return PixelBox(u - across, v - down, u + across, v + down)
+    box = PixelBox(u - across, v - down, u + across, v + down)
+    seen = own_colours(picture, box)
+    return box if seen is not None and seen.common(colours) > _LEAST_COMMON else None
 
 
 def _places(picture: Color, there: ExpectedBox) -> tuple[FloatArray, FloatArray, FloatArray]:
