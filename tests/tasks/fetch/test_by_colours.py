@@ -38,12 +38,16 @@ def pixel_of(point: np.ndarray, here: PlanarPose = HERE) -> np.ndarray:
 
 
 def frame(
-    middle: np.ndarray, colour: tuple[int, int, int], here: PlanarPose = HERE, number: int = 0
+    middle: np.ndarray,
+    colour: tuple[int, int, int],
+    here: PlanarPose = HERE,
+    number: int = 0,
+    half: tuple[float, float] = (0.025, 0.05),
 ) -> Frame:
     """A picture from `here` of a grey room with a box of one colour about `middle`."""
     size = optics_of(ROBOT.camera)[0].size
     picture = np.full((size.height, size.width, 3), 120, np.uint8)
-    corners = [pixel_of(middle + np.array(each), here) for each in ((0.0, 0.025, 0.05), (0.0, -0.025, -0.05))]
+    corners = [pixel_of(middle + side * np.array([0.0, *half]), here) for side in (1.0, -1.0)]
     cv2.rectangle(picture, *(tuple(map(int, np.round(each))) for each in corners), colour, -1)
     jpeg = bytes(cv2.imencode(".jpg", picture)[1])
     return Frame(number, number, number, size, jpeg)
@@ -94,6 +98,16 @@ def test_thing_is_tapped_where_its_colours_are_and_known_there_from_then_on() ->
     assert known is not None
     np.testing.assert_allclose(pixel_of(known.place.point_in_world), (tap.u, tap.v), atol=0.01)
     np.testing.assert_allclose(known.middle[:2], moved[:2], atol=0.012)
+
+
+def test_thing_measured_together_with_what_stands_beside_it_is_found_and_its_size_forgotten() -> None:
+    run = run_after_look((RED, RED, RED))
+    assert run.memory.known is not None
+    wide = replace(size_at(0.6, 0.03, width=0.25, height=0.25), seen_along=0.0)
+    run.remember(known=replace(run.memory.known, size=wide, axis_offset=np.array([0.1, 0.1, 0.1])))
+    tap = tapped(run, frame(MIDDLE, RED, half=(0.03, 0.03)))
+    assert tap is not None and abs(tap.u - pixel_of(MIDDLE)[0]) < 15.0
+    assert run.memory.known.size is None and run.memory.known.axis_offset is None
 
 
 @pytest.mark.parametrize("seen", [frame(MIDDLE, GREEN), Frame(0, 0, 0, ROBOT.camera.model().size, b"")])

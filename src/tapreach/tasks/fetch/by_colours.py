@@ -63,20 +63,25 @@ def _with_view(known: OwnColours | None, jpeg: bytes, box: PixelBox) -> OwnColou
 async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap | None:
     """Return a tap on the thing where a picture taken at `here` shows its colours; None where it does not.
 
-    From then on the spot tapped is the one that is known.
+    From then on the spot tapped is the one that is known. What is found only as a thing of usual size was
+    measured wrongly, together with what stands beside it: its size is forgotten.
     """
     known, description = run.memory.known, run.context.description
     if known is None or known.colours is None:
         return None
-    there = expected_box(known, here, description)
-    if there is None:
-        return None
-    found = await run.context.compute.call(_found, frame.jpeg, known.colours, there)
-    if found is None:
-        return None
-    box, spot = found
-    run.remember(known=known_at_spot(known, spot, box, here, description))
-    return Tap(frame.frame_id, spot.u, spot.v)
+    for supposed in (known, replace(known, size=None, axis_offset=None)):
+        there = expected_box(supposed, here, description)
+        if there is None:
+            continue
+        found = await run.context.compute.call(_found, frame.jpeg, known.colours, there)
+        if found is None:
+            continue
+        if supposed.size is None:
+            run.forget()
+        box, spot = found
+        run.remember(known=known_at_spot(supposed, spot, box, here, description))
+        return Tap(frame.frame_id, spot.u, spot.v)
+    return None
 
 
 def _found(jpeg: bytes, colours: OwnColours, there: ExpectedBox) -> tuple[PixelBox, Pixel] | None:
