@@ -69,14 +69,15 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
     known, description = run.memory.known, run.context.description
     if known is None or known.colours is None:
         return None
-    for supposed in (known, replace(known, size=None, axis_offset=None)):
+    as_usual = [] if known.size is None else [replace(known, size=None, axis_offset=None)]
+    for supposed in (known, *as_usual):
         there = expected_box(supposed, here, description)
         if there is None:
             continue
         found = await run.context.compute.call(_found, frame.jpeg, known.colours, there)
         if found is None:
             continue
-        if supposed.size is None:
+        if supposed is not known:
             run.forget()
         box, spot = found
         run.remember(known=known_at_spot(supposed, spot, box, here, description))
