@@ -34,6 +34,9 @@ worlds = settings(max_examples=25, deadline=None)
 afar = st.tuples(st.floats(0.5, 2.5), st.floats(-1.0, 1.0))
 
 
+OPENS = BODY.claw.opens_to
+
+
 def planned(size: ThingSize, others=(), body=BODY, **more) -> Approach | NoWay:
     return plan_approach(size, others, HERE, body, **more)
 
@@ -223,11 +226,15 @@ def test_region_over_the_robot_itself_does_not_hold_it():
 
 @worlds
 @given(st.floats(0.8, 2.5), st.floats(-0.6, 0.6))
-def test_another_side_is_one_from_which_the_thing_looks_otherwise(x, y):
-    found = planned(size_at(x, y, width=0.085), from_another_side=True)
+def test_another_side_is_one_from_which_the_thing_was_not_looked_at_and_may_fit(x, y):
+    size = size_at(x, y, width=0.085).seen_from(HERE)
+    least = 0.5 * (size.fits(OPENS) + size.footprint.best_fit(OPENS))
+    found = planned(size, least_fit=least)
     assume(isinstance(found, Approach))
     assert isinstance(found, Approach)
-    assert math.radians(30.0) <= abs(found.side) <= math.radians(75.0)
+    claw = found.stand.heading + found.stance.rotation
+    assert size.aside_of_looks(claw) >= math.radians(30.0)
+    assert size.footprint.fits(claw, OPENS) >= least
 
 
 @worlds
@@ -236,11 +243,11 @@ def test_side_counts_from_where_the_width_was_measured(x, sideways, heading):
     size = size_at(x, 0.0, width=0.085)
     # The base has driven aside since; from where it is now the thing is seen from another side already.
     here = PlanarPose(0.0, sideways, heading)
-    found = plan_approach(replace(size, seen_along=0.0), [], here, BODY, from_another_side=True)
+    found = plan_approach(replace(size, seen_along=0.0), [], here, BODY, least_fit=0.01)
     assume(isinstance(found, Approach))
     assert isinstance(found, Approach)
-    claw = math.remainder(found.stand.heading + found.stance.rotation, math.tau)
-    assert math.radians(29.9) <= abs(claw) <= math.radians(75.1)
+    claw = math.remainder(2.0 * (found.stand.heading + found.stance.rotation), math.tau) / 2.0
+    assert abs(claw) >= math.radians(29.9)
 
 
 def test_error_of_the_last_stretch_grows_with_it():

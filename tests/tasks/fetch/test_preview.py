@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from tapreach.errors import InputError
-from tapreach.geometry.planar_motion import PlanarPose
-from tapreach.tasks.fetch.preview import preview, supposed_size
+from tapreach.estimation.footprint import SeenWidth
+from tapreach.geometry.planar_motion import PlanarPose, wrapped
+from tapreach.tasks.fetch.preview import OTHER_SIDES, preview, supposed_size
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tasks.fetch.worlds import ROBOT, obstacle_at, thing_at
@@ -80,14 +81,45 @@ def test_thing_too_wide_over_its_corner_is_looked_at_from_another_side():
     assert abs(found.approach.side) >= math.radians(30.0)
 
 
-def test_thing_barely_too_wide_from_near_is_driven_around_where_that_is_asked_for():
-    """Its width is not sure enough to look for another side at once; seen from near it was too wide."""
-    thing = ahead(1.5, width=0.075, width_sd=0.004)
-    straight, around = (preview(thing, [], HERE, ROBOT, seeks_another_side=seeks) for seeks in (False, True))
-    assert straight.approach is not None and abs(straight.approach.side) < math.radians(30.0)
-    assert around.approach is not None and abs(around.approach.side) >= math.radians(30.0)
-    last = preview(thing, [], HERE, ROBOT, is_last_look=True, seeks_another_side=True)
-    assert last.verdict is Verdict.NO and "too wide" in last.reason
+def test_thing_that_no_other_side_makes_likelier_to_fit_is_tried_from_here_if_it_may_fit():
+    """Seen from everywhere a round thing is as wide as from here."""
+    barely, too_wide = (seen_from_all_sides(width) for width in (0.075, 0.09))
+    found = preview(barely, [], HERE, ROBOT, is_last_look=True)
+    assert found.verdict is Verdict.YES and not found.from_another_side
+    refused = preview(too_wide, [], HERE, ROBOT, is_last_look=True)
+    assert refused.verdict is Verdict.NO and "too wide" in refused.reason
+
+
+def seen_from_all_sides(width):
+    thing = ahead(1.0, width=width, width_sd=0.004)
+    looks = tuple(SeenWidth(HERE.heading + aside, width, 0.004) for aside in np.arange(0.0, math.pi, 0.5))
+    return replace(thing, size=replace(thing.size, seen=looks))
+
+
+def test_box_seen_from_two_sides_is_gripped_across_its_narrow_one():
+    """Too wide over its corner, and narrow from 40° to the left: that side is driven to, not the other."""
+    corner, side = HERE.heading, HERE.heading - math.radians(40.0)
+    looks = (SeenWidth(corner, 0.08, 0.003), SeenWidth(side, 0.055, 0.003))
+    thing = ahead(1.5, width=0.08, width_sd=0.003)
+    found = preview(replace(thing, size=replace(thing.size, seen=looks)), [], HERE, ROBOT)
+    assert found.approach is not None and found.from_another_side
+    claw = found.approach.stand.heading + found.approach.stance.rotation
+    assert abs(wrapped(2.0 * (claw - side))) / 2.0 < math.radians(25.0)
+
+
+def test_box_at_the_last_look_is_judged_across_the_claw_and_not_where_it_was_measured():
+    """Measured 80 mm wide over its corner, then 55 mm from here; the newest believed is still the first."""
+    thing = ahead(0.45, width=0.08, width_sd=0.003)
+    seen_along = HERE.heading + math.radians(45.0)
+    looks = (SeenWidth(seen_along, 0.08, 0.003), SeenWidth(HERE.heading, 0.055, 0.003))
+    known = replace(thing.size, seen_along=seen_along, seen=looks)
+    assert preview(replace(thing, size=known), [], HERE, ROBOT, is_last_look=True).verdict is Verdict.YES
+
+
+def test_other_sides_are_not_sought_for_ever():
+    thing = ahead(1.5, width=0.082, width_sd=0.003)
+    seeking, tired = (preview(thing, [], HERE, ROBOT, other_sides=n) for n in (OTHER_SIDES, OTHER_SIDES + 1))
+    assert seeking.from_another_side and not tired.from_another_side
 
 
 def test_outline_too_wide_is_looked_at_from_near_before_it_is_believed():

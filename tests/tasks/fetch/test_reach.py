@@ -30,7 +30,7 @@ def fits(ahead: float, height: float, opening: float, rotation: float) -> bool:
     [
         ({"width": 0.101, "width_sd": 0.001}, "no", "28 mm too wide for the claw: it is 101 mm wide", ""),
         ({"width": 0.105, "width_sd": 0.006}, "no", "32 mm too wide for the claw: it is 105 mm wide", ""),
-        ({"width": 0.102, "width_sd": 0.006}, "unsure", "29 mm too wide for the claw as", "another side"),
+        ({"width": 0.102, "width_sd": 0.006}, "no", "29 mm too wide for the claw: it is 102 mm", ""),
         ({"width": 0.25, "width_sd": 0.12}, "no", "177 mm too wide for the claw: it is 250 mm wide", ""),
         ({"width": 0.085}, "unsure", "12 mm too wide for the claw as seen from here", "from another side"),
         (
@@ -91,8 +91,15 @@ def test_last_look_decides_by_the_width_itself():
     doubtful = size_at(1.0, 0.0, width=0.07, width_sd=0.004)
     assert judge(doubtful, CLAW).verdict is Verdict.UNSURE
     assert judge(doubtful, CLAW, is_last_look=True).verdict is Verdict.YES
-    too_wide = size_at(1.0, 0.0, width=0.075, width_sd=0.004)
+    too_wide = size_at(1.0, 0.0, width=0.1, width_sd=0.004)
     assert judge(too_wide, CLAW, is_last_look=True).verdict is Verdict.NO
+
+
+def test_what_may_fit_is_tried_at_the_last_look_where_no_other_side_is_sought():
+    barely, hardly = (size_at(1.0, 0.0, width=width, width_sd=0.004) for width in (0.075, 0.09))
+    tried, refused = (judge(each, CLAW, True, seeks_another_side=False) for each in (barely, hardly))
+    assert tried.verdict is Verdict.YES and "may be too wide" in tried.reason
+    assert refused.verdict is Verdict.NO
 
 
 @settings(max_examples=40, deadline=None)

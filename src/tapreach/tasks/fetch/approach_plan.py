@@ -30,13 +30,13 @@ def plan_approach(
     world_from_base: PlanarPose,
     body: Body,
     free_behind: float = 0.0,
-    from_another_side: bool = False,
+    least_fit: float = 0.0,
 ) -> Approach | NoWay:
     """Return the way from `world_from_base` to a stand before the thing, clear of `others` (in the world).
 
-    free_behind: how far straight back the floor is known to be free [m]. from_another_side: arrive from 30 to
-    75° beside the line of sight across which it was measured. What may stand in the same place as the thing
-    is the thing itself.
+    free_behind: how far straight back the floor is known to be free [m]. least_fit: arrive from where it
+    fits the claw with this probability at least. What may stand in the same place as the thing is the thing
+    itself.
     """
     middle = into(world_from_base, np.asarray(size.axis_in_world, dtype=np.float64)[None, :2])[0]
     here = Obstacle(GOAL_NAME, middle, middle, size.width / 2.0, 0.0)
@@ -44,7 +44,8 @@ def plan_approach(
     passage = Passage.among([each for each in seen if not is_same(each, here)], here, body)
     if (touched := passage.touching) is not None:
         return stuck(touched)
-    goal = Goal(size, middle, body, passage, world_from_base.heading, from_another_side)
+    size = size.seen_from(world_from_base)
+    goal = Goal(size, middle, body, passage, world_from_base.heading, least_fit)
     found = _planned(goal, free_behind)
     return found if isinstance(found, NoWay) else found.seen_from_world(world_from_base)
 

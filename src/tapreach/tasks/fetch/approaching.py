@@ -12,7 +12,7 @@ from tapreach.tasks.fetch.glance import glance
 from tapreach.tasks.fetch.looking import ACCURACY, MOST_LOOKS, in_words, measure, previewed
 from tapreach.tasks.fetch.looking_again import still_followed, tap_again, tap_unseen
 from tapreach.tasks.fetch.preview import ReachPreview
-from tapreach.tasks.fetch.reach import Verdict, may_be_narrower
+from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import ThingSize
@@ -77,18 +77,20 @@ async def last_look(run: FetchRun) -> Ended:
     await measure(run)
     seen = run.preview = await previewed(run, is_last_look=True)
     if seen.verdict is Verdict.NO or seen.approach is None:
-        return _from_another_side(run, seen) or Ended(Outcome.CANNOT, in_words(seen))
+        return Ended(Outcome.CANNOT, in_words(seen))
     if next_leg(seen.approach) is not None:
-        return Ended(Outcome.MISSED, "measured from near, it is to be gripped from elsewhere")
-    return Ended(Outcome.DONE, seen.reason)
+        return _from_elsewhere(run, seen)
+    return Ended(Outcome.DONE if seen.verdict is Verdict.YES else Outcome.CANNOT, in_words(seen))
 
 
-def _from_another_side(run: FetchRun, seen: ReachPreview) -> Ended | None:
-    """End with driving to where it may be narrower, once."""
-    if seen.size is None or run.memory.seeks_another_side or not may_be_narrower(seen.size, run.filed_claw):
-        return None
-    run.remember(seeks_another_side=True)
-    return Ended(Outcome.MISSED, f"{in_words(seen)}; a box may be narrower from another side")
+def _from_elsewhere(run: FetchRun, seen: ReachPreview) -> Ended:
+    """End with driving on to another stand; what is too wide is believed to be so from now on."""
+    assert seen.size is not None
+    if seen.size.width > run.filed_claw.opens_to:
+        run.remember(other_sides=run.memory.other_sides + 1)
+    if seen.from_another_side:
+        return Ended(Outcome.MISSED, in_words(seen))
+    return Ended(Outcome.MISSED, "measured from near, it is to be gripped from elsewhere")
 
 
 async def _anew(run: FetchRun) -> Ended | None:

@@ -12,7 +12,7 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep, wrapped
 from tapreach.tasks.fetch.detour import Places, places_around
 from tapreach.tasks.fetch.durations import slide_seconds
-from tapreach.tasks.fetch.final_leg import NEVER_WHOLE_STRETCH, SIDE_SECONDS, FinalLeg, Goal
+from tapreach.tasks.fetch.final_leg import NEVER_WHOLE_STRETCH, FinalLeg, Goal
 from tapreach.tasks.fetch.route import HERE, Route
 
 _LONGER_RING = 0.08, 0.3
@@ -104,9 +104,9 @@ class _Detours:
         for i, place in enumerate(self._places):
             step = stance.approach_from(PlanarPose(place[0], place[1]), self._goal.middle)
             if step is not None and step.advance > 0.0:
-                side = abs(wrapped(step.turn + stance.rotation - self._goal.seen_along))
+                side = wrapped(step.turn + stance.rotation - self._goal.seen_along)
                 headings[i] = step.turn
-                seconds[i] = step.advance / self._speed + SIDE_SECONDS * side
+                seconds[i] = step.advance / self._speed + self._goal.side_seconds(side)
         return headings, seconds
 
     def _to_first(self) -> FloatArray:

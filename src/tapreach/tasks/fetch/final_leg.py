@@ -22,7 +22,12 @@ _LEAST_LEG = 0.02
 NOT_WHOLE_SECONDS, SIDE_SECONDS, TURNED_ARM_SECONDS = 8.0, 6.0, 3.0
 """What is worth driving longer for [s]: the whole thing in the last picture; each radian less away from the
 side that was looked at; an arm straight ahead."""
-FROM_ANOTHER_SIDE = (math.radians(30.0), math.radians(75.0))
+IN_VAIN_SECONDS = 40.0
+"""What a grasp in vain takes, or a look from yet another side [s]."""
+NEW_SIDE = math.radians(30.0)
+"""A look from so far beside all others tells something new."""
+LIKELY = 0.5
+"""From a side that tells nothing new it must fit with this probability."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +59,7 @@ class FinalLeg:
 @dataclass(frozen=True)
 class Blocked:
     """Why not: what is in the way of 'turn', 'way' or 'claw'; nothing is where the thing is too 'near' by
-    `missing` [m], or the `side` is not one that was asked for.
+    `missing` [m], or it fits the claw too improbably from that `side`.
     """
 
     of: str
@@ -66,7 +71,8 @@ class Blocked:
 class Goal:
     """The thing in the frame of the base at the start: middle (2,) [m].
 
-    world_heading: of that base in the world [rad]. from_another_side: only stands beside the line of sight.
+    world_heading: of that base in the world [rad]. least_fit: only stands from which it fits the claw with
+    this probability, and from a new side, or likely; 0: from anywhere.
     """
 
     size: ThingSize
@@ -74,7 +80,7 @@ class Goal:
     body: Body
     passage: Passage
     world_heading: float = 0.0
-    from_another_side: bool = False
+    least_fit: float = 0.0
 
     @cached_property
     def seen_along(self) -> float:
@@ -82,6 +88,15 @@ class Goal:
         if self.size.seen_along is not None:
             return self.size.seen_along - self.world_heading
         return math.atan2(self.middle[1], self.middle[0])
+
+    def fits(self, side: float) -> float:
+        """Return how probably it fits the claw that comes from so far beside that line of sight [rad]."""
+        along = self.seen_along + side + self.world_heading
+        return self.size.footprint.fits(along, self.body.claw.opens_to)
+
+    def side_seconds(self, side: float) -> float:
+        """Return what speaks against a side [s]."""
+        return SIDE_SECONDS * abs(side) + IN_VAIN_SECONDS * (1.0 - self.fits(side))
 
     @cached_property
     def stances(self) -> tuple[Stance, ...]:
@@ -122,7 +137,7 @@ class Goal:
 
     def _blocked(self, found: FinalLeg) -> Blocked | None:
         passage, turned = self.passage, found.start.after(PlanarStep(found.first.turn, 0.0))
-        if self.from_another_side and not FROM_ANOTHER_SIDE[0] <= abs(found.side) <= FROM_ANOTHER_SIDE[1]:
+        if not self._is_worth(found.side):
             return Blocked("side", None)
         if (by := passage.in_the_way_of_turn(found.start, found.first.turn)) is not None:
             return Blocked("turn", by)
@@ -134,10 +149,16 @@ class Goal:
             return Blocked("claw", by)
         return None
 
+    def _is_worth(self, side: float) -> bool:
+        if self.least_fit == 0.0:
+            return True
+        is_new = self.size.aside_of_looks(self.seen_along + side + self.world_heading) >= NEW_SIDE
+        return self.fits(side) >= max(self.least_fit, 0.0 if is_new else LIKELY)
+
     def _cost(self, first: PlanarStep, stretch: float, stance: Stance, is_whole: bool, side: float) -> float:
         base = self.body.base
         seconds = Leg(first, 1.0, True).seconds(base)
         seconds += Leg(PlanarStep(0.0, stretch), NEAR_SHARE, True).seconds(base)
         seconds += 0.0 if is_whole else NOT_WHOLE_SECONDS
         seconds += TURNED_ARM_SECONDS * float(stance.rotation != 0.0)
-        return seconds + (0.0 if self.from_another_side else SIDE_SECONDS * abs(side))
+        return seconds + self.side_seconds(side)

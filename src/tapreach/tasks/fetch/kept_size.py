@@ -4,14 +4,12 @@ import math
 from dataclasses import dataclass, replace
 
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
-from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tapreach.tasks.fetch.thing import SAME_SIDE, NoSize, ThingSize
 from tapreach.tasks.sighting import is_apart
 
 _SAME_SIGMAS = 3.0
 _ELSEWHERE = 0.05, math.radians(5.0)
 """A size measured again after so much of a way [m], [rad] rests on other pictures."""
-_SAME_SIDE = math.radians(15.0)
-"""A thing seen from farther aside than this shows another width."""
 
 
 @dataclass
@@ -76,7 +74,7 @@ def with_earlier(new: ThingSize, earlier: ThingSize | None, seen_along: float) -
     if earlier is None or earlier.seen_along is None or not agree(new, earlier):
         return new
     height, height_sd = _mean(new.height, new.height_sd, earlier.height, earlier.height_sd)
-    if abs(wrapped(seen_along - earlier.seen_along)) > _SAME_SIDE:
+    if abs(wrapped(seen_along - earlier.seen_along)) > SAME_SIDE:
         return replace(new, height=height, height_sd=height_sd)
     width, width_sd = _mean(new.width, new.width_sd, earlier.width, earlier.width_sd)
     return replace(new, width=width, width_sd=width_sd, height=height, height_sd=height_sd)
@@ -87,7 +85,7 @@ def contradicts(new: ThingSize, current: ThingSize, seen_along: float) -> bool:
 
     seen_along: as above. What stands close behind or beside the thing now and then passes for part of it.
     """
-    is_same_side = current.seen_along is None or abs(wrapped(seen_along - current.seen_along)) <= _SAME_SIDE
+    is_same_side = current.seen_along is None or abs(wrapped(seen_along - current.seen_along)) <= SAME_SIDE
     return is_same_side and not agree(new, current)
 
 

@@ -52,4 +52,5 @@ class KnownThing:
 
     def pushed(self) -> "KnownThing":
         """Return it after the claw was around it, or tried to be: it may stand, or lie, elsewhere."""
-        return replace(self, place=self.place.perhaps_moved(PUSHED_SD, PUSHED_UP_SD))
+        size = None if self.size is None else replace(self.size, seen=())
+        return replace(self, place=self.place.perhaps_moved(PUSHED_SD, PUSHED_UP_SD), size=size)

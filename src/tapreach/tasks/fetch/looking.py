@@ -151,7 +151,7 @@ async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
         preview,
         free_behind=way_behind(run.context.poses),
         is_last_look=is_last_look,
-        seeks_another_side=run.memory.seeks_another_side,
+        other_sides=run.memory.other_sides,
     )
     if estimate is not None:
         await run.around.look(run.context, estimate, thing)

@@ -19,7 +19,7 @@ class FetchMemory:
     called_from: where the base stood when it was called. known: what the newest look has told, None before
     the first. seen_again: where the thing was seen after a miss, None where it was not. gripped_at: the arm's
     pose when the claw closed, None while nothing has been gripped. zero: the arm as it was seen. way: where
-    the base has been since. seeks_another_side: from near it was too wide for the claw as it was seen.
+    the base has been since. other_sides: how often it was too wide from near, and another side was sought.
     was_blocked: something on the way has blocked the robot. is_agreed: the operator was asked, and agreed.
     """
 
@@ -35,6 +35,6 @@ class FetchMemory:
     gripped_at: ArmPose | None = None
     zero: ArmZero | None = None
     way: tuple[PlanarPose, ...] = ()
-    seeks_another_side: bool = False
+    other_sides: int = 0
     was_blocked: bool = False
     is_agreed: bool = False

@@ -6,6 +6,7 @@ A pure function of the thing, the other known things, the robot's pose and its f
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -23,8 +24,10 @@ from tapreach.tasks.fetch.too_high import refused_by_place
 
 SUPPOSED_WIDTH, SUPPOSED_HEIGHT = 0.06, 0.10
 """What is approached to be measured is supposed to be so large [m]."""
-SIDE_DEPTH = 0.4
-"""One sigma of how much deeper or less deep than wide a thing is, as a share of its width."""
+_SUPPOSED_SD = 0.4
+"""One sigma of both, as a share."""
+OTHER_SIDES = 2
+"""So often another side of what is too wide is looked for."""
 WIDTH_TOLD_WITHIN = 0.9
 WIDTH_TOLD = 2
 """What is too wide by its outline in pictures from farther away [m], or by fewer looks, is first looked at
@@ -55,6 +58,7 @@ class ReachPreview:
 
     UNSURE with an approach: driving it shows; the verdict at its last look counts. approach and grasp are
     None where there is nothing to show. size: what was planned for, supposed where `is_supposed`.
+    from_another_side: the way leads to where it may be narrower; that is UNSURE also at the last look.
     """
 
     verdict: Verdict
@@ -62,6 +66,7 @@ class ReachPreview:
     advice: str
     size: ThingSize | None = None
     is_supposed: bool = False
+    from_another_side: bool = False
     approach: Approach | None = None
     grasp: Grasp | None = None
 
@@ -84,29 +89,35 @@ def preview(
     *,
     free_behind: float = 0.0,
     is_last_look: bool = False,
-    seeks_another_side: bool = False,
+    other_sides: int = 0,
     drifts: bool = True,
 ) -> ReachPreview:
     """Return whether and how the robot, standing at `world_from_base`, can fetch the thing.
 
     others: what must not be touched, in the world. free_behind: how far straight back the floor is known to
     be free [m]. is_last_look: the thing will not be measured better: widths count as they are, and what
-    cannot be told then is a no. seeks_another_side: it was too wide from where it was looked at last. drifts:
-    the way keeps clear of the others by what odometry may be off there, too. Raises InputError for values
-    that are not finite, and for what is no covariance.
+    cannot be told then is a no. other_sides: how often another side was sought, as it was too wide from near.
+    drifts: the way keeps clear of the others by what odometry may be off there, too. Raises InputError for
+    values that are not finite, and for what is no covariance.
     """
     finite_array("point_in_world", thing.point_in_world, (3,))
     require_covariance("point_cov_in_world", thing.point_cov_in_world, 3)
     body = Body.of(description) if drifts else Body.of(description).without_drift()
-    size = thing.size if is_last_look else _believed(thing.size, world_from_base, body)
+    is_near = is_last_look or other_sides > 0
+    size = thing.size if is_near else _believed(thing.size, world_from_base, body)
     if isinstance(size, NoSize):
         found = _unmeasured(thing, size, others, world_from_base, body, free_behind)
     else:
         finite_array("axis_in_world", size.axis_in_world, (3,))
         require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
-        judged = judge(size, body.claw, is_last_look, seeks_another_side)
-        found = _measured(thing, size, judged, others, world_from_base, body, free_behind, is_last_look)
-    if is_last_look and found.verdict is Verdict.UNSURE:
+        size = size.seen_from(world_from_base).across(size.sight_from(world_from_base))
+        judged = judge(size, body.claw, is_last_look, other_sides <= OTHER_SIDES)
+        plan = partial(_measured, thing, size, others, world_from_base, body, free_behind, is_last_look)
+        found = plan(judged)
+        if found.approach is None and judged.from_another_side:
+            as_it_is = plan(judge(size, body.claw, is_last_look, seeks_another_side=False))
+            found = found if as_it_is.approach is None else as_it_is
+    if is_last_look and found.verdict is Verdict.UNSURE and not found.from_another_side:
         return replace(found, verdict=Verdict.NO)
     return found
 
@@ -134,7 +145,7 @@ def supposed_size(thing: Thing, world_from_base: PlanarPose) -> ThingSize:
     behind = SUPPOSED_WIDTH / 2.0 * off / max(float(np.hypot(*off)), 1e-9)
     height = max(SUPPOSED_HEIGHT, 1.2 * float(point[2]))
     axis = np.array([*(point[:2] + behind), height / 2.0])
-    width_sd, height_sd = SIDE_DEPTH * SUPPOSED_WIDTH, SIDE_DEPTH * height
+    width_sd, height_sd = _SUPPOSED_SD * SUPPOSED_WIDTH, _SUPPOSED_SD * height
     cov = np.asarray(thing.point_cov_in_world, dtype=np.float64)
     return ThingSize(SUPPOSED_WIDTH, width_sd, height, height_sd, 0.0, axis, cov, "its size is supposed")
 
@@ -154,31 +165,34 @@ def _unmeasured(
     way = plan_approach(size, others, world_from_base, body, free_behind)
     if isinstance(way, NoWay):
         return ReachPreview(Verdict.NO, way.reason, way.advice, size, True)
-    reason = f"its size is not known: {why.reason}"
-    return ReachPreview(Verdict.UNSURE, reason, "drive nearer, or draw a box around it", size, True, way)
+    reason, nearer = f"its size is not known: {why.reason}", "drive nearer, or draw a box around it"
+    return ReachPreview(Verdict.UNSURE, reason, nearer, size, True, approach=way)
 
 
 def _measured(
     thing: Thing,
     size: ThingSize,
-    judged: Judgement,
     others: Sequence[Obstacle],
     world_from_base: PlanarPose,
     body: Body,
     free_behind: float,
     is_last_look: bool,
+    judged: Judgement,
 ) -> ReachPreview:
     if judged.verdict is not Verdict.YES:
         judged = _too_high(thing, body) or judged
     if judged.grip is None and not judged.from_another_side:
         return ReachPreview(judged.verdict, judged.reason, judged.advice, size)
-    way = plan_approach(size, others, world_from_base, body, free_behind, judged.from_another_side)
+    seeks = judged.from_another_side
+    least_fit = _better_fit(size, body) if seeks else 0.0
+    way = plan_approach(size, others, world_from_base, body, free_behind, least_fit)
     if isinstance(way, NoWay):
         return _without_way(way, judged, size)
-    judged = _from_side(judged, size, way.side, body, is_last_look)
+    judged = _from_side(judged, size, way, body, is_last_look)
     judged = _placed(judged, size, world_from_base)
     reason = f"{way.in_words()}. {judged.reason}"
-    return ReachPreview(judged.verdict, reason, judged.advice, size, False, way, grasp_in_world(way, body))
+    grasp = grasp_in_world(way, body)
+    return ReachPreview(judged.verdict, reason, judged.advice, size, False, seeks, way, grasp)
 
 
 def _too_high(thing: Thing, body: Body) -> Judgement | None:
@@ -194,13 +208,23 @@ def _without_way(way: NoWay, judged: Judgement, size: ThingSize) -> ReachPreview
     return ReachPreview(Verdict.NO, way.reason, way.advice, size)
 
 
-def _from_side(judged: Judgement, size: ThingSize, side: float, body: Body, is_last_look: bool) -> Judgement:
-    """Judge the width as the claw will find it: at an angle to the line of sight it is partly supposed."""
-    if judged.verdict is not Verdict.YES or is_last_look:
+def _better_fit(size: ThingSize, body: Body) -> float:
+    """Return the probability of a fit that another side must promise: halfway from here to the best."""
+    opens = body.claw.opens_to
+    return 0.5 * (size.fits(opens) + size.footprint.best_fit(opens))
+
+
+def _from_side(
+    judged: Judgement, size: ThingSize, way: Approach, body: Body, is_last_look: bool
+) -> Judgement:
+    """Judge the width as the claw will find it, from where it comes."""
+    if judged.verdict is not Verdict.YES and not (is_last_look and judged.from_another_side):
         return judged
-    supposed = SIDE_DEPTH * size.width * min(1.0, abs(math.sin(side)))
-    again = judge(replace(size, width_sd=math.hypot(size.width_sd, supposed)), body.claw)
-    if again.verdict is Verdict.YES:
+    found = size.across(way.stand.heading + way.stance.rotation)
+    again = judge(found, body.claw, is_last_look, seeks_another_side=False)
+    if is_last_look and judged.from_another_side:
+        return again if again.verdict is Verdict.YES else judged
+    if is_last_look or again.verdict is Verdict.YES:
         return judged
     words = f"{judged.reason}; from the side where it is gripped its width is not known"
     return replace(judged, verdict=Verdict.UNSURE, reason=words, advice="look at it from there")

@@ -22,8 +22,10 @@ BITE = 0.006
 """The gripping point lies this much below the thing's top and above its foot [m], where it can."""
 OFF_FLOOR = 0.03
 """What begins higher above the floor stands on something or hangs [m]."""
-OVER_CORNER = math.sqrt(2.0)
-"""A square box looks so much wider over its corner than from its side."""
+WORTH_TRYING = 0.1
+"""A look from another side is worth its time where the thing fits the claw with so much greater a probability
+there; a grasp, where no other side is better, with a fit as probable: in vain it costs little.
+"""
 _HEIGHT_STEP = 0.01
 
 
@@ -66,17 +68,16 @@ class Judgement:
 
 
 def judge(
-    size: ThingSize, claw: Claw, is_last_look: bool = False, seeks_another_side: bool = False
+    size: ThingSize, claw: Claw, is_last_look: bool = False, seeks_another_side: bool = True
 ) -> Judgement:
     """Return whether a thing of this size can be gripped.
 
-    is_last_look: it will not be measured better; what the widths themselves say then counts, and a side from
-    which it is narrower is not looked for. seeks_another_side: the width counts as it is too, and such a side
-    is looked for.
+    is_last_look: it will not be measured better; what the widths themselves say then counts, and what may fit
+    is tried. seeks_another_side: what is too wide may be looked at from where it is narrower.
     """
     grip = grip_for(size, claw)
-    seeks = seeks_another_side and may_be_narrower(size, claw)
-    refused = _too_high(size, claw) or _too_flat(size, claw) or _too_wide(size, claw, is_last_look, seeks)
+    refused = _too_high(size, claw) or _too_flat(size, claw)
+    refused = refused or _too_wide(size, claw, is_last_look, seeks_another_side)
     if size.goes_on_above and (refused is None or refused.verdict is Verdict.UNSURE):
         return _no(_endless(size), "draw a box around it if it does end there")
     if refused is not None:
@@ -86,7 +87,7 @@ def judge(
     if grip is None:
         return _no(f"the claw does not get around it at any height from {_mm(claw.lowest)} up", "")
     doubt = _doubtful_stand(size, grip) or _doubtful_width(size, claw, grip, is_last_look)
-    return doubt or Judgement(Verdict.YES, in_words(size, grip), "", grip)
+    return doubt or Judgement(Verdict.YES, in_words(size, grip, claw), "", grip)
 
 
 def grip_for(size: ThingSize, claw: Claw, rotation: float = 0.0) -> Grip | None:
@@ -111,9 +112,11 @@ def highest_grip(half_depth: float, claw: Claw) -> float | None:
     return next(can, None)
 
 
-def in_words(size: ThingSize, grip: Grip) -> str:
-    """Return what is going to be done, such as 'gripped 40 mm above the floor by a claw open by 60 mm'."""
+def in_words(size: ThingSize, grip: Grip, claw: Claw) -> str:
+    """Return what is going to be done, such as '50 mm wide, 90 mm high: gripped 40 mm above the floor'."""
     known = f"{_mm(size.width)} wide, {_mm(size.height)} high"
+    if size.width > claw.opens_to:
+        known = f"may be too wide, and is tried: {known}"
     return f"{known}: gripped {_mm(grip.height)} above the floor; its weight is not known"
 
 
@@ -157,29 +160,26 @@ def _too_flat(size: ThingSize, claw: Claw) -> Judgement | None:
     return Judgement(Verdict.UNSURE, f"may be {words}", nearer, None)
 
 
-def may_be_narrower(size: ThingSize, claw: Claw) -> bool:
-    """Tell whether what is too wide may fit the claw from elsewhere: a box that is seen over its corner, or
-    what was measured together with something behind it.
+def is_narrower_elsewhere(size: ThingSize, claw: Claw) -> bool:
+    """Tell whether what is too wide fits the claw more probably from another side, as a box does that is seen
+    over its corner.
     """
-    least = size.width - SURE * size.width_sd
-    return size.width > claw.opens_to >= least or _may_be_a_corner(size.width, claw)
-
-
-def _may_be_a_corner(width: float, claw: Claw) -> bool:
-    return claw.opens_to < width <= OVER_CORNER * (claw.opens_to - CLAW_SPARE)
+    if size.width <= claw.opens_to:
+        return False
+    best = size.footprint.best_fit(claw.opens_to)
+    return best - size.fits(claw.opens_to) >= WORTH_TRYING
 
 
 def _too_wide(size: ThingSize, claw: Claw, is_last_look: bool, seeks: bool) -> Judgement | None:
-    opens, least = claw.opens_to, size.width - SURE * size.width_sd
-    if is_last_look:
-        return _no(_wider_by(size, claw), "") if size.width > opens else None
-    # Hardly any box that fits is seen so wide, over its very corner: here one sigma is enough.
-    may_fit = _may_be_a_corner(least, claw) and _may_be_a_corner(size.width - size.width_sd, claw)
-    if seeks or may_fit:
+    opens = claw.opens_to
+    if size.width <= opens:
+        return None
+    if seeks and is_narrower_elsewhere(size, claw):
         side = "look at it from another side: a box is narrower there than over its corner"
         words = f"{_mm(size.width - opens)} too wide for the claw as seen from here"
         return Judgement(Verdict.UNSURE, words, side, grip_for(size, claw), from_another_side=True)
-    return _no(_wider_by(size, claw), "") if least > opens else None
+    is_told = is_last_look or size.width - SURE * size.width_sd > opens
+    return _no(_wider_by(size, claw), "") if is_told and size.fits(opens) < WORTH_TRYING else None
 
 
 def _endless(size: ThingSize) -> str:
@@ -204,7 +204,7 @@ def _doubtful_stand(size: ThingSize, grip: Grip) -> Judgement | None:
 
 def _doubtful_width(size: ThingSize, claw: Claw, grip: Grip, is_last_look: bool) -> Judgement | None:
     fits, needed = claw.opens_to - CLAW_SPARE, size.width + SURE * size.width_sd
-    if needed <= fits or (is_last_look and size.width <= claw.opens_to):
+    if needed <= fits or is_last_look:
         return None
     known = f"{_mm(size.width)} ± {_mm(SURE * size.width_sd)} wide, the claw opens to {_mm(claw.opens_to)}"
     if size.width_sd < CLAW_SPARE / SURE:

@@ -1,12 +1,12 @@
 """What the phases of one fetch share: the robot's context, and what is known by now."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from tapreach.errors import TapreachError
+from tapreach.estimation.footprint import SeenWidth
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.fetch.arm_watch import ArmWatch
@@ -42,8 +42,8 @@ class FetchRun:
     """One fetch on its way. Everything in the world of the present odometry.
 
     size: as last measured, its axis given by its offset (3,) [m] from the tapped place. earlier_size: as the
-    looks before this one told it. size_doubt: of what was measured
-    against it.
+    looks before this one told it. size_doubt: of what was measured against it. seen: all widths, believed or
+    not.
     """
 
     context: TaskContext
@@ -56,6 +56,7 @@ class FetchRun:
     axis_offset: FloatArray | None = None
     earlier_size: ThingSize | None = None
     size_doubt: SizeDoubt = field(default_factory=SizeDoubt)
+    seen: tuple[SeenWidth, ...] = ()
     preview: ReachPreview | None = None
     around: SeenAround = field(default_factory=SeenAround)
 
@@ -67,12 +68,13 @@ class FetchRun:
         known = self.memory.known
         if known is not None and known.size is not None:
             self.size = self.earlier_size = known.size
-            self.axis_offset = known.axis_offset
+            self.axis_offset, self.seen = known.axis_offset, known.size.seen
 
     def forget(self) -> None:
         """Know nothing of the thing any more: what is looked at now is another one."""
         self.remember(known=None)
         self.size, self.axis_offset, self.earlier_size = NoSize("it has not been measured yet"), None, None
+        self.seen = ()
 
     @property
     def here(self) -> PlanarPose:
@@ -136,22 +138,27 @@ class FetchRun:
         """Take a new size, measured with the tapped place at `point_in_world`; one that cannot be told does
         not replace one that is known, nor does one that differs much, until another from elsewhere agrees.
         """
-        believed = self.size_doubt.believed(size, self.size, self.here, self._sight_along(size))
+        along = self._sight_along(size)
+        if isinstance(size, ThingSize):
+            self.seen = (*self.seen, SeenWidth(along, size.width, size.width_sd))
+        believed = self.size_doubt.believed(size, self.size, self.here, along)
         if believed is not None:
             self.axis_offset = np.asarray(believed.axis_in_world - point_in_world)
             along = self._sight_along(believed)
             self.size = self.sized_along(with_earlier(believed, self.earlier_size, along))
         elif isinstance(self.size, NoSize) and isinstance(size, NoSize):
             self.size = size
+        if isinstance(self.size, ThingSize):
+            self.size = replace(self.size, seen=self.seen)
 
     def sized_along(self, size: ThingSize) -> ThingSize:
         """Return a size with the direction of the sight across which it was measured, for later looks."""
-        return size if size.seen_along is not None else replace(size, seen_along=self._sight_along(size))
+        return size.seen_from(self.here)
 
     def _sight_along(self, size: ThingSize | NoSize) -> float:
         if isinstance(size, NoSize):
             return self.here.heading
-        return math.atan2(size.axis_in_world[1] - self.here.y, size.axis_in_world[0] - self.here.x)
+        return size.sight_from(self.here) if size.seen_along is None else size.seen_along
 
     def remember(self, **changes: object) -> None:
         """Change what a stopped fetch goes on from."""

@@ -14,11 +14,12 @@ from tapreach.errors import FrameError
 from tapreach.estimation.thing_size import FusedSize, Silhouette, agreeing, fused, silhouette_of_box
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel_box import PixelBox
+from tapreach.geometry.planar_motion import wrapped
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.extent import extent_of
 from tapreach.tasks.fetch.thing import NoSize, ThingSize
-from tapreach.tasks.fetch.thing_views import Seen, references, seen_from, views_of
+from tapreach.tasks.fetch.thing_views import Seen, ThingView, references, seen_from, views_of
 from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.task import TaskContext
 from tapreach.vision.thing_cut import BOUND
@@ -28,6 +29,8 @@ AT_LEAST = "at least so wide"
 _LEAST_VIEWS = 3
 _TOLD = 0.15
 """Of what is wider [m] the size is told though its sides are not both seen."""
+_SAME_SIDE = math.radians(20.0)
+"""Seen from farther aside than this from the newest place a box has another outline."""
 _CUT = 0.3
 """Share of the rows that the picture's edge cuts off."""
 
@@ -82,9 +85,9 @@ def thing_size(
     relative_sd: of its distance. sightings: with their poses as now known, in the order of time. jpegs: their
     pictures by frame id; those without one are left out.
     """
-    views = views_of(sightings, jpegs, description, point_in_world)
+    views = _from_one_side(views_of(sightings, jpegs, description, point_in_world), point_in_world)
     if len(views) < _LEAST_VIEWS:
-        return NoSize(f"only {len(views)} pictures of it from different places: locate it again")
+        return NoSize(f"only {len(views)} pictures of it from this side: locate it again")
     point_height_sd = float(np.sqrt(point_cov_in_world[2, 2]))
     seen: list[Seen] = []
     for reference in references(views, point_in_world):
@@ -95,7 +98,8 @@ def thing_size(
         pair = agreeing([each.silhouette for each in seen if each.cut.is_bounded])
         if pair:
             told = _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE])
-            return replace(told, goes_on_above=all(each.goes_on_above for each in _of(pair, seen)))
+            goes_on = all(each.goes_on_above for each in _of(pair, seen))
+            return replace(told, goes_on_above=goes_on, seen_along=_sight_along(pair))
     wide = [each.silhouette for each in seen if each.silhouette.width > _TOLD]
     if wide and len(wide) == len(seen):
         return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE, AT_LEAST])
@@ -104,6 +108,21 @@ def thing_size(
         _told(fused(whole, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE]) if whole else None
     )
     return NoSize(_why_not(seen), alone)
+
+
+def _from_one_side(views: Sequence[ThingView], point: FloatArray) -> list[ThingView]:
+    """Return the views from about where the newest is from."""
+    ways = [point - view.placed.world_from_camera.translation for view in views]
+    along = [math.atan2(way[1], way[0]) for way in ways]
+    return [
+        view for view, one in zip(views, along, strict=True) if abs(wrapped(one - along[-1])) <= _SAME_SIDE
+    ]
+
+
+def _sight_along(seen: Sequence[Silhouette]) -> float:
+    """Return the mean direction in the world of the lines of sight [rad]."""
+    x, y, _ = np.sum([each.ahead for each in seen], axis=0)
+    return math.atan2(y, x)
 
 
 def _of(pair: Sequence[Silhouette], seen: Sequence[Seen]) -> list[Seen]:

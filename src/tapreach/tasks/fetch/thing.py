@@ -1,8 +1,14 @@
 """What is to be fetched, as far as it is known."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
+from tapreach.estimation.footprint import Footprint, SeenWidth, footprint
 from tapreach.geometry.finite import FloatArray
+from tapreach.geometry.planar_motion import PlanarPose, wrapped
+
+SAME_SIDE = math.radians(15.0)
+"""A thing seen from farther aside than this shows another width."""
 
 
 @dataclass(frozen=True)
@@ -15,7 +21,7 @@ class ThingSize:
     direction in the world of the line of sight across which the width was measured [rad]; None stands for
     that from where the base is. goes_on_above: its upper end was not found; `height` is as far as was looked.
     by_picture: the outline was found, not drawn by somebody. told: how often it was measured so, each time
-    from elsewhere.
+    from elsewhere. seen: the widths by all looks, from whatever side.
     """
 
     width: float
@@ -30,6 +36,42 @@ class ThingSize:
     by_picture: bool = False
     told: int = 1
     goes_on_above: bool = False
+    seen: tuple[SeenWidth, ...] = ()
+
+    @property
+    def footprint(self) -> Footprint:
+        """What its outline on the floor may be, by the widths from all sides."""
+        return footprint(self.seen or (SeenWidth(self.seen_along or 0.0, self.width, self.width_sd),))
+
+    def across(self, along: float) -> "ThingSize":
+        """Return the size across the direction `along` in the world [rad]: as measured where it was from
+        there, else as all widths together tell it.
+        """
+        if self.seen_along is not None and abs(wrapped(along - self.seen_along)) <= SAME_SIDE:
+            return self
+        width, width_sd = self.footprint.width(along)
+        return replace(self, width=width, width_sd=width_sd, seen_along=along)
+
+    def aside_of_looks(self, along: float) -> float:
+        """Return how far a direction in the world is from the nearest across which it was measured [rad];
+        opposite sides show the same.
+        """
+        looks = [look.along for look in self.seen] or [self.seen_along or 0.0]
+        return min(abs(wrapped(2.0 * (along - look))) / 2.0 for look in looks)
+
+    def fits(self, opening: float) -> float:
+        """Return how probable it is that it is no wider than `opening` [m] across this sight."""
+        return self.footprint.fits(self.seen_along or 0.0, opening)
+
+    def seen_from(self, base: PlanarPose) -> "ThingSize":
+        """Return the size with `seen_along` told, where that is from `base`."""
+        if self.seen_along is not None:
+            return self
+        return replace(self, seen_along=self.sight_from(base))
+
+    def sight_from(self, base: PlanarPose) -> float:
+        """Return the direction in the world of the line of sight from a base to its middle [rad]."""
+        return math.atan2(self.axis_in_world[1] - base.y, self.axis_in_world[0] - base.x)
 
 
 @dataclass(frozen=True)
