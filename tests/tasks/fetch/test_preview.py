@@ -116,6 +116,14 @@ def test_box_at_the_last_look_is_judged_across_the_claw_and_not_where_it_was_mea
     assert preview(replace(thing, size=known), [], HERE, ROBOT, is_last_look=True).verdict is Verdict.YES
 
 
+def test_box_that_looks_too_wide_from_far_is_driven_aside_once_that_was_told_twice():
+    """From far another side is hardly a way round; by one look alone what stands behind may be part of it."""
+    thing = ahead(1.5, width=0.085, width_sd=0.004)
+    once, twice = (preview(by_picture(thing, told), [], HERE, ROBOT) for told in (1, 2))
+    assert once.is_supposed and not once.from_another_side
+    assert twice.from_another_side and twice.verdict is Verdict.UNSURE
+
+
 def test_other_sides_are_not_sought_for_ever():
     thing = ahead(1.5, width=0.082, width_sd=0.003)
     seeking, tired = (preview(thing, [], HERE, ROBOT, other_sides=n) for n in (OTHER_SIDES, OTHER_SIDES + 1))

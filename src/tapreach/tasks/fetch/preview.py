@@ -18,7 +18,7 @@ from tapreach.tasks.fetch.approach import Approach, NoWay
 from tapreach.tasks.fetch.approach_plan import plan_approach
 from tapreach.tasks.fetch.body import Body
 from tapreach.tasks.fetch.obstacle import Obstacle, out_of
-from tapreach.tasks.fetch.reach import OFF_FLOOR, Judgement, Verdict, judge
+from tapreach.tasks.fetch.reach import OFF_FLOOR, Judgement, Verdict, is_narrower_elsewhere, judge
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tapreach.tasks.fetch.too_high import refused_by_place
 
@@ -105,21 +105,24 @@ def preview(
     body = Body.of(description) if drifts else Body.of(description).without_drift()
     is_near = is_last_look or other_sides > 0
     size = thing.size if is_near else _believed(thing.size, world_from_base, body)
-    if isinstance(size, NoSize):
-        found = _unmeasured(thing, size, others, world_from_base, body, free_behind)
+    seeks = other_sides <= OTHER_SIDES
+    plan = partial(_measured, thing, others, world_from_base, body, free_behind, is_last_look, seeks)
+    if isinstance(size, ThingSize):
+        found = plan(size)
     else:
-        finite_array("axis_in_world", size.axis_in_world, (3,))
-        require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
-        size = size.seen_from(world_from_base).across(size.sight_from(world_from_base))
-        judged = judge(size, body.claw, is_last_look, other_sides <= OTHER_SIDES)
-        plan = partial(_measured, thing, size, others, world_from_base, body, free_behind, is_last_look)
-        found = plan(judged)
-        if found.approach is None and judged.from_another_side:
-            as_it_is = plan(judge(size, body.claw, is_last_look, seeks_another_side=False))
-            found = found if as_it_is.approach is None else as_it_is
+        found = _unmeasured(thing, size, others, world_from_base, body, free_behind)
+        # From far another side is hardly a way round, and the thing stays in the picture.
+        if isinstance(thing.size, ThingSize) and _looks_over_its_corner(thing.size, body):
+            aside = plan(thing.size)
+            found = aside if aside.from_another_side else found
     if is_last_look and found.verdict is Verdict.UNSURE and not found.from_another_side:
         return replace(found, verdict=Verdict.NO)
     return found
+
+
+def _looks_over_its_corner(size: ThingSize, body: Body) -> bool:
+    is_told = size.told >= WIDTH_TOLD and not size.goes_on_above
+    return is_told and is_narrower_elsewhere(size, body.claw)
 
 
 def _believed(size: ThingSize | NoSize, world_from_base: PlanarPose, body: Body) -> ThingSize | NoSize:
@@ -170,6 +173,29 @@ def _unmeasured(
 
 
 def _measured(
+    thing: Thing,
+    others: Sequence[Obstacle],
+    world_from_base: PlanarPose,
+    body: Body,
+    free_behind: float,
+    is_last_look: bool,
+    seeks: bool,
+    size: ThingSize,
+) -> ReachPreview:
+    """Plan for a size that is believed; where no way leads to another side, from where it is."""
+    finite_array("axis_in_world", size.axis_in_world, (3,))
+    require_covariance("axis_cov_in_world", size.axis_cov_in_world, 3)
+    size = size.seen_from(world_from_base).across(size.sight_from(world_from_base))
+    judged = judge(size, body.claw, is_last_look, seeks)
+    plan = partial(_judged, thing, size, others, world_from_base, body, free_behind, is_last_look)
+    found = plan(judged)
+    if found.approach is None and judged.from_another_side:
+        as_it_is = plan(judge(size, body.claw, is_last_look, seeks_another_side=False))
+        return found if as_it_is.approach is None else as_it_is
+    return found
+
+
+def _judged(
     thing: Thing,
     size: ThingSize,
     others: Sequence[Obstacle],
