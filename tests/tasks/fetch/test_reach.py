@@ -100,6 +100,8 @@ def test_what_may_fit_is_tried_at_the_last_look_where_no_other_side_is_sought():
     tried, refused = (judge(each, CLAW, True, seeks_another_side=False) for each in (barely, hardly))
     assert tried.verdict is Verdict.YES and "may be too wide" in tried.reason
     assert refused.verdict is Verdict.NO
+    at_least_so_wide = size_at(1.0, 0.0, width=0.16, width_sd=0.08)
+    assert judge(at_least_so_wide, CLAW, True, seeks_another_side=False).verdict is Verdict.NO
 
 
 @settings(max_examples=40, deadline=None)

@@ -140,7 +140,7 @@ class FetchRun:
         """
         along = self._sight_along(size)
         if isinstance(size, ThingSize):
-            self.seen = (*self.seen, SeenWidth(along, size.width, size.width_sd))
+            self.seen = (*self.seen, size.look_along(along))
         believed = self.size_doubt.believed(size, self.size, self.here, along)
         if believed is not None:
             self.axis_offset = np.asarray(believed.axis_in_world - point_in_world)

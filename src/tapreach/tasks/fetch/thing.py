@@ -9,6 +9,8 @@ from tapreach.geometry.planar_motion import PlanarPose, wrapped
 
 SAME_SIDE = math.radians(15.0)
 """A thing seen from farther aside than this shows another width."""
+_LOOK_SD = 0.1
+"""One sigma of a width of which both sides are seen, at most; where less is known it is a lower limit."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,11 @@ class ThingSize:
     @property
     def footprint(self) -> Footprint:
         """What its outline on the floor may be, by the widths from all sides."""
-        return footprint(self.seen or (SeenWidth(self.seen_along or 0.0, self.width, self.width_sd),))
+        return footprint(self.seen or (self.look_along(self.seen_along or 0.0),))
+
+    def look_along(self, along: float) -> SeenWidth:
+        """Return the width as what a look along a direction in the world [rad] tells of the outline."""
+        return SeenWidth(along, self.width, min(self.width_sd, _LOOK_SD * self.width))
 
     def across(self, along: float) -> "ThingSize":
         """Return the size across the direction `along` in the world [rad]: as measured where it was from
