@@ -22,10 +22,10 @@ BITE = 0.006
 """The gripping point lies this much below the thing's top and above its foot [m], where it can."""
 OFF_FLOOR = 0.03
 """What begins higher above the floor stands on something or hangs [m]."""
-WORTH_TRYING = 0.1
-"""A look from another side is worth its time where the thing fits the claw with so much greater a probability
-there; a grasp, where no other side is better, with a fit as probable: in vain it costs little.
-"""
+WORTH_LOOKING = 0.1
+"""Another side is looked for where the thing fits the claw with so much greater a probability."""
+WORTH_TRYING = 0.2
+"""So probable a fit is tried where no other side is better: four grasps in vain cost less than a fetch."""
 _HEIGHT_STEP = 0.01
 
 
@@ -167,7 +167,7 @@ def is_narrower_elsewhere(size: ThingSize, claw: Claw) -> bool:
     if size.width <= claw.opens_to:
         return False
     best = size.footprint.best_fit(claw.opens_to)
-    return best - size.fits(claw.opens_to) >= WORTH_TRYING
+    return best - size.fits(claw.opens_to) >= WORTH_LOOKING
 
 
 def _too_wide(size: ThingSize, claw: Claw, is_last_look: bool, seeks: bool) -> Judgement | None:
