@@ -10,11 +10,13 @@ from tapreach.tasks.fetch.claw_show_room import CLEAR, way_back
 from tapreach.tasks.fetch.looking_poses import FARTHEST_AHEAD, looking_poses
 from tasks.fetch.worlds import ROBOT, obstacle_at
 
+POSES = looking_poses(ROBOT, arm_noise())
+
 
 @given(st.floats(-0.6, 0.6), st.floats(-0.5, 0.5))
 def test_once_it_has_backed_off_the_claw_is_shown_clear_of_what_stands_there(x: float, y: float) -> None:
     back = way_back([obstacle_at("can", x, y, 0.03)], ROBOT)
-    for pose in looking_poses(ROBOT, arm_noise()):
+    for pose in POSES:
         apart = math.hypot(x + back - pose.tip[0], y - pose.tip[1]) - 0.03
         assert apart > CLEAR or x <= 0.0
 

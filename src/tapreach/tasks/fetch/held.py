@@ -1,10 +1,11 @@
-"""Whether the thing is held: the claw is told to close fully and then looked at in two poses.
+"""Whether the thing is held: the claw is told to close fully and then looked at in two poses or more.
 
 An empty claw closes until its fingers meet; a thing keeps them apart. Whether they are apart is seen in what
-differs between two pictures with the arm in two places (vision/held.py): no colour needs to be known, and
+differs between pictures with the arm in different places (vision/held.py): no colour needs to be known, and
 what lies or stands behind the claw does not move. Servos that tell where they are, are heard as well.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -21,7 +22,7 @@ from tapreach.tasks.fetch.line_of_sight import is_hidden
 from tapreach.tasks.task import TaskContext, TaskReport
 from tapreach.vision.claw_motion import change_between
 from tapreach.vision.held import AcrossClaw, claw_width
-from tapreach.vision.image_io import BrokenPicture, decode_color
+from tapreach.vision.image_io import BrokenPicture, Color, decode_color
 from tapreach.vision.steadied import steadied
 
 SURE = 5.0
@@ -30,8 +31,6 @@ BY_SERVO = 5.0
 """What a servo that stopped short of closing adds to the log odds."""
 MOST_DISAGREEMENT = 0.2
 """Share of what was seen across the claw that no width of it explains, beyond which there is no verdict."""
-LOOKS = 2
-"""How often it is looked before it is left at not being sure."""
 STOPPED_SHORT = 0.006
 """Opening at which a claw that was told to close tells of something between its fingers [m]."""
 LEAST_THING = 0.018
@@ -42,8 +41,9 @@ _AHEAD = (0.3, 0.6, 0.9)
 _UP = (0.4, 0.7, 0.95)
 """Where across the fingers it is looked: shares of how far they reach ahead and up."""
 _STEP, _BEYOND = 0.0015, 0.008
-_AWAY, _SHOWN = (0.14, -0.09, 0.17), (0.175, 0.03, 0.09)
-"""Where the tips are held away and where shown: ahead and left of the camera, above the floor [m]."""
+_AWAY, _SHOWN = (0.14, -0.09, 0.17), ((0.175, 0.03, 0.09), (0.19, 0.06, 0.11), (0.165, 0.0, 0.08))
+"""Where the tips are held away and where shown, before one background after the other: ahead and left of the
+camera, above the floor [m]."""
 
 
 class HeldVerdict(StrEnum):
@@ -73,10 +73,11 @@ class HeldPicture:
 
 
 async def look_whether_held(context: TaskContext, zero: ArmZero, thing_width: float = 0.0) -> Held:
-    """Close the claw fully, look at it in two poses, and say whether there is something in it.
+    """Close the claw fully, look at it in two poses, and in more as long as they do not tell, and say
+    whether there is something in it.
 
     thing_width [m]: as it was seen before, 0 for not known; knowing it makes the verdict surer. For a claw
-    lifted clear of what stands on the floor, with the base at rest; about 2 s a look. Raises
+    lifted clear of what stands on the floor, with the base at rest; about 1 s a pose. Raises
     MotionInterrupted when it is stopped (the claw stays closed), LinkLost when the camera falls silent.
     """
     if isinstance(zero.offsets, NoOffsets):
@@ -84,42 +85,43 @@ async def look_whether_held(context: TaskContext, zero: ArmZero, thing_width: fl
     poses = view_poses(context.description, zero)
     if len(poses) < 2:
         return _unsure("the arm cannot show its claw to the camera in two places")
-    held = _unsure("it was not looked at")
-    for _ in range(LOOKS):
-        held = await _look(context, zero.offsets, poses, thing_width)
+    held, pictures, is_short = _unsure("it was not looked at"), list[HeldPicture](), False
+    for number, sent in enumerate(poses):
+        context.report(TaskReport("verify", number / len(poses), "looking whether it is held"))
+        picture, stops_short = await _picture(context, sent)
+        pictures, is_short = [*pictures, picture], is_short or stops_short
+        if len(pictures) < 2:
+            continue
+        arguments = tuple(pictures), zero.offsets, context.description, is_short, thing_width
+        held = await context.compute.call(held_in, *arguments)
         if held.verdict is not HeldVerdict.UNSURE:
             break
     return held
 
 
-async def _look(
-    context: TaskContext, offsets: ArmOffsets, poses: tuple[ArmJoints, ...], thing_width: float
-) -> Held:
+async def _picture(context: TaskContext, sent: ArmJoints) -> tuple[HeldPicture, bool]:
+    """Take a picture of the closing claw, and hear whether its servo stopped short."""
     states: list[ArmState] = []
     unsubscribe = context.robot.arm.subscribe(states.append)
-    pictures = []
     try:
-        for number, sent in enumerate(poses):
-            context.report(TaskReport("verify", number / len(poses), "looking whether it is held"))
-            await context.pilot.move_arm(ArmPose(sent.rotation, sent.shoulder, sent.elbow, 0.0))
-            frame = await frame_at_rest(context)
-            pictures.append(HeldPicture(sent, frame.jpeg))
+        await context.pilot.move_arm(ArmPose(sent.rotation, sent.shoulder, sent.elbow, 0.0))
+        frame = await frame_at_rest(context)
     finally:
         unsubscribe()
-    is_short = bool(states) and stopped_short(states[-1])
-    away, shown = pictures
-    arguments = (away, shown), offsets, context.description, is_short, thing_width
-    return await context.compute.call(held_in, *arguments)
+    return HeldPicture(sent, frame.jpeg), bool(states) and stopped_short(states[-1])
 
 
 def view_poses(description: RobotDescription, zero: ArmZero) -> tuple[ArmJoints, ...]:
-    """Return what to send the servos to hold the claw away and to show it; fewer where it is out of reach."""
+    """Return what to send the servos to hold the claw away and then to show it, at one place after the other;
+    none where it cannot be held away, fewer where a place is out of reach.
+    """
     mount = description.camera.mount
     arm = zero.seen_arm(mount.base_from_camera())
     if arm is None:
         return ()
-    tips = [(mount.forward + ahead, mount.left + left, up) for ahead, left, up in (_AWAY, _SHOWN)]
-    return tuple(joints for tip in tips if (joints := arm.inverse(tip).joints) is not None)
+    tips = [(mount.forward + ahead, mount.left + left, up) for ahead, left, up in (_AWAY, *_SHOWN)]
+    away, *shown = (arm.inverse(tip).joints for tip in tips)
+    return () if away is None else (away, *(joints for joints in shown if joints is not None))
 
 
 def stopped_short(state: ArmState) -> bool:
@@ -131,24 +133,30 @@ def stopped_short(state: ArmState) -> bool:
 
 
 def held_in(
-    pictures: tuple[HeldPicture, HeldPicture],
+    pictures: Sequence[HeldPicture],
     offsets: ArmOffsets,
     description: RobotDescription,
     is_short: bool = False,
     thing_width: float = 0.0,
 ) -> Held:
-    """Return what two pictures of the closed claw say: held away, and shown to the camera (`view_poses`).
+    """Return what pictures of the closed claw say: held away, then shown to the camera (`view_poses`).
 
     is_short: as `stopped_short` tells. thing_width [m]: as it was seen before, 0 for not known.
     """
-    decoded = [decode_color(picture.jpeg) for picture in pictures]
-    for each in decoded:
-        if isinstance(each, BrokenPicture):
-            return _unsure(f"a picture cannot be used: {each.reason}")
-    away, shown = decoded
-    assert not isinstance(away, BrokenPicture) and not isinstance(shown, BrokenPicture)
-    change = change_between(shown, steadied(away, shown))
-    looks = [(change, _across(pictures[1].sent, pictures[0].sent, offsets, description))]
+    decoded = list[Color]()
+    for picture in pictures:
+        color = decode_color(picture.jpeg)
+        if isinstance(color, BrokenPicture):
+            return _unsure(f"a picture cannot be used: {color.reason}")
+        decoded.append(color)
+    away = decoded[0]
+    looks = [
+        (
+            change_between(shown, steadied(away, shown)),
+            _across(by.sent, pictures[0].sent, offsets, description),
+        )
+        for by, shown in zip(pictures[1:], decoded[1:], strict=True)
+    ]
     finger = description.arm.shape().finger_thickness
     widest = description.arm.claw_max / 2.0 + finger
     least = max(LEAST_THING, _LEAST_SHARE * min(thing_width, description.arm.claw_max))
