@@ -1,6 +1,9 @@
 """What ways are sought around: no seen thing stands where the robot does, and none can end a fetch."""
 
+from dataclasses import replace
+
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -42,6 +45,16 @@ def test_what_one_look_shows_close_by_the_thing_is_taken_for_its_shadow_until_an
     beside = float(middle[0]) - own - 0.04
     assert around(seen_at(beside, float(middle[1]), radius=0.015, looks=1)) == []
     assert len(around(seen_at(beside, float(middle[1]), radius=0.015, looks=2))) == 1
+
+
+@pytest.mark.parametrize(("place_sd", "count"), [(0.005, 1), (0.02, 0), (1.0, 0)])
+def test_what_is_seen_as_far_beside_as_the_thing_may_be_off_is_the_thing(place_sd: float, count: int) -> None:
+    middle, own = own_room(GOAL)
+    thing = replace(GOAL, point_cov_in_world=place_sd**2 * np.eye(3))
+    beside = seen_at(float(middle[0]), float(middle[1]) + own + 0.035, looks=2)
+    assert len(SeenAround((beside,)).obstacles(PlanarPose(), thing, ROBOT)) == count
+    apart = seen_at(float(middle[0]), float(middle[1]) + own + 0.08, looks=2)
+    assert len(SeenAround((apart,)).obstacles(PlanarPose(), thing, ROBOT)) == 1
 
 
 def test_what_stands_apart_stays_as_it_was_seen() -> None:

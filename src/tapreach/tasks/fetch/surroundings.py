@@ -28,6 +28,10 @@ _LOOK_APART, _TURN_APART = 0.03, 0.1
 _BUMPED_RADIUS = 0.04
 """Half of how wide that is taken to be what blocked the robot [m]."""
 _NO_VIEW = -1
+_SURE, _MOST_OFF = 2.0, 0.05
+"""What is seen within so many sigmas of the thing's place beside it, at most so far [m], is taken for the
+thing: seen from another side it would be driven round for ever.
+"""
 _BY_THE_THING = 0.05
 """What one look alone shows so near the thing [m] may be its shadow, or its gleam on the floor."""
 
@@ -80,6 +84,7 @@ class SeenAround:
     def obstacles(self, here: PlanarPose, thing: Thing, description: RobotDescription) -> list["Seen"]:
         """Return what stands around, without the robot at `here` and the thing itself."""
         middle, radius = own_room(thing)
+        radius += min(_SURE * thing.place_sd, _MOST_OFF)
         outline = Outline.of(description).at(here)
         found = []
         for each in self.known:

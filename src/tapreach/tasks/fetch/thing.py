@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from tapreach.estimation.footprint import Footprint, SeenWidth, footprint
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
@@ -101,3 +103,8 @@ class Thing:
     point_in_world: FloatArray
     point_cov_in_world: FloatArray
     size: ThingSize | NoSize
+
+    @property
+    def place_sd(self) -> float:
+        """One sigma of its place on the floor [m], along the direction in which it is known worst."""
+        return math.sqrt(max(0.0, float(np.linalg.eigvalsh(self.point_cov_in_world[:2, :2])[-1])))
