@@ -14,13 +14,12 @@ from tapreach.tasks.fetch.known_thing import KnownThing
 from tapreach.tasks.optics import optics_of
 from tapreach.vision.seen_again_colours import ExpectedBox
 
-_AT_REST_PX = 5.0
+AT_REST_PX = 5.0
 """A camera that rocks, and a picture's own errors, one sigma [px]."""
 _LEAST_SCALE, _MOST_SCALE = 0.1, 0.25
 """By how much nearer or farther it may be, at least and at most, one sigma."""
 _NEAREST = 0.08
 """Nearer to the camera [m] the whole thing is never in the picture."""
-_STEP_M = 0.002
 
 
 def expected_box(known: KnownThing, here: PlanarPose, description: RobotDescription) -> ExpectedBox | None:
@@ -29,12 +28,11 @@ def expected_box(known: KnownThing, here: PlanarPose, description: RobotDescript
     """
     place, middle = known.place.seen_from(here, description), known.middle
     pixel = projected(middle, here, description)
-    beside = [projected(middle + _STEP_M * axis, here, description) for axis in np.eye(3)]
     camera, mount, _ = optics_of(description.camera)
-    if pixel is None or any(each is None for each in beside):
+    if pixel is None:
         return None
-    by_point = (np.array(beside) - pixel).T / _STEP_M
-    covariance = by_point @ place.cov_in_world @ by_point.T + _AT_REST_PX**2 * np.eye(2)
+    by_point = pixel_by_point(middle, here, description)
+    covariance = by_point @ place.cov_in_world @ by_point.T + AT_REST_PX**2 * np.eye(2)
     depth = float((here.to_rigid() * mount).inv().apply(middle)[2])
     distance_sd = math.sqrt(float(np.linalg.eigvalsh(place.cov_in_world)[-1]))
     step = 1.0 + min(max(distance_sd / depth, _LEAST_SCALE), _MOST_SCALE)
@@ -49,6 +47,14 @@ def projected(point: FloatArray, here: PlanarPose, description: RobotDescription
     in_camera = (here.to_rigid() * mount).inv().apply(point)
     projection = camera.project(in_camera[None])
     return projection.pixels[0] if in_camera[2] > _NEAREST and projection.is_valid[0] else None
+
+
+def pixel_by_point(point: FloatArray, here: PlanarPose, description: RobotDescription) -> FloatArray:
+    """Return by how much a pixel moves with its point in the world, (2, 3) [px/m]."""
+    camera, mount, _ = optics_of(description.camera)
+    camera_from_world = (here.to_rigid() * mount).inv()
+    by_camera = camera.project_with_jacobian(camera_from_world.apply(point)[None])[1][0]
+    return np.asarray(by_camera @ camera_from_world.rotation.as_matrix())
 
 
 def known_at_spot(

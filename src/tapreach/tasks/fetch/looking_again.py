@@ -19,6 +19,7 @@ from tapreach.robot.messages import Frame
 from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold
 from tapreach.tasks.fetch.by_colours import is_of_its_colours, tap_by_colours
+from tapreach.tasks.fetch.expected_box import AT_REST_PX, pixel_by_point
 from tapreach.tasks.fetch.known_target import pixel_of
 from tapreach.tasks.fetch.known_thing import Appearance, KnownThing
 from tapreach.tasks.fetch.run import FetchRun
@@ -34,10 +35,7 @@ from tapreach.vision.seen_again import Expected, SeenAgain, seen_again
 
 _SAME_SIGMAS = 4.0
 """What is located farther from where it was known to be is another thing."""
-_AT_REST_PX = 5.0
-"""A camera that rocks, and a picture's own errors, one sigma [px]."""
 _LEAST_STEP, _MOST_STEP = 0.06, 0.2
-_STEP_M = 0.002
 _SURELY_MET = 0.6
 """A tap unseen may miss the middle by this share of half the thing's width, one sigma."""
 
@@ -171,16 +169,15 @@ def expected(known: KnownThing, here: PlanarPose, description: RobotDescription)
     place = known.place.seen_from(here, description)
     camera, mount, _ = optics_of(description.camera)
     camera_from_world = (here.to_rigid() * mount).inv()
-    beside = [place.point_in_world, *(place.point_in_world + _STEP_M * np.eye(3))]
-    points = camera_from_world.apply(np.array(beside))
-    projection = camera.project(points)
-    if not np.all(projection.is_valid) or not projection.is_inside[0]:
+    point = camera_from_world.apply(place.point_in_world)
+    projection = camera.project(point[None])
+    if not projection.is_valid[0] or not projection.is_inside[0]:
         return None
-    by_point = (projection.pixels[1:] - projection.pixels[0]).T / _STEP_M
-    distance = float(np.linalg.norm(points[0]))
+    by_point = pixel_by_point(place.point_in_world, here, description)
+    distance = float(np.linalg.norm(point))
     nearer = known.appearance.distance / distance
     moved = camera.fx * math.radians(description.camera.mount.angle_sigma_deg) * abs(nearer - 1.0)
-    at_rest = (_AT_REST_PX**2 + moved**2) * np.eye(2)
+    at_rest = (AT_REST_PX**2 + moved**2) * np.eye(2)
     covariance = by_point @ place.cov_in_world @ by_point.T + at_rest
     distance_sd = math.sqrt(float(np.linalg.eigvalsh(place.cov_in_world)[-1]))
     return Expected(projection.pixels[0], covariance, _scales(nearer, distance_sd / distance))
