@@ -39,3 +39,11 @@ def test_texture_behind_the_thing_does_not_draw_the_place_out_of_it() -> None:
 
 def test_box_of_one_colour_has_its_middle_followed() -> None:
     assert place_to_follow(np.full((480, 640), 90, np.uint8), BOX) == BOX.middle
+
+
+def test_place_lies_where_most_looks_like_the_thing_if_that_is_anywhere() -> None:
+    own = np.zeros((480, 640), bool)
+    own[:, 330:] = True
+    place = place_to_follow(picture(), BOX, own)
+    assert place.u > 330.0 and BOX.inner(0.61).holds(place)
+    assert place_to_follow(picture(), BOX, np.zeros_like(own)) == place_to_follow(picture(), BOX)

@@ -98,3 +98,21 @@ def test_colours_of_two_views_are_joined_by_their_pixels() -> None:
     assert evidence(picture, both)[180, 228] > 1.0 and evidence(picture, both)[180, 252] > 1.0
     box = PixelBox(230, 160, 250, 200)
     assert has_colours(picture, both, box) and not has_colours(room(3), both, box)
+
+
+def test_thing_of_which_most_has_the_colour_of_the_floor_is_found_by_the_rest() -> None:
+    """As a white cup with blue dots on a bright floor is."""
+
+    def dotted(u: int, v: int, half: tuple[int, int], noise: int) -> np.ndarray:
+        seen = with_can(room(noise), u, v, ((150, 150, 150),), half)
+        for x in (-0.6, 0.0, 0.6):
+            for y in (-0.6, 0.0, 0.6):
+                spot = round(u + x * half[0]), round(v + y * half[1])
+                cv2.circle(seen, spot, round(0.28 * half[0]), (150, 60, 40), -1)
+        return seen
+
+    colours = own_colours(dotted(240, 180, (15, 25), 0), PixelBox(225, 155, 255, 205))
+    assert colours is not None
+    found = box_by_colours(dotted(262, 170, (30, 50), 1), colours, around(250.0, 180.0))
+    assert found is not None
+    np.testing.assert_allclose(found.middle.to_array(), [262.0, 170.0], atol=10.0)

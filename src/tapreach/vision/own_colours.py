@@ -29,7 +29,7 @@ _LEAST_OWN = 0.3
 """A thing of whose pixels fewer have a colour of its own is not told by colours."""
 
 Bins = NDArray[np.intp]
-T = TypeVar("T", Values, Bins)
+T = TypeVar("T", Values, Bins, Color)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,40 +51,45 @@ class OwnColours:
 
 def own_colours(picture: Color, box: PixelBox) -> OwnColours | None:
     """Return the colours of what fills `box` that are not those around it; None where it has hardly any."""
-    bins = _bins(picture)
-    inside, beside, around = (_counts(_cut(bins, box.inner(each))) for each in (_INSIDE, _BESIDE, _AROUND))
-    own = np.maximum(_shares(inside) - _shares(around - beside), 0.0)
+    bins = colour_bins(picture)
+    shares = _INSIDE, _BESIDE, _AROUND
+    inside, beside, around = (counts_of(cut_to(bins, box.inner(each))) for each in shares)
+    own = np.maximum(shares_of(inside) - shares_of(around - beside), 0.0)
     told = float(own.sum())
     return OwnColours(own / told, told * float(inside.sum())) if told > _LEAST_OWN else None
 
 
 def evidence(picture: Color, colours: OwnColours) -> Values:
     """Return (height, width) log odds, -2 to 2, that a pixel is the thing's and not any of the picture."""
-    bins = _bins(picture)
-    odds = np.log((colours.shares + _RARE) / (_shares(_counts(bins)) + _RARE))
+    bins = colour_bins(picture)
+    odds = np.log((colours.shares + _RARE) / (shares_of(counts_of(bins)) + _RARE))
     return np.clip(odds, -_STRONGEST, _STRONGEST).astype(np.float32)[bins]
 
 
 def has_colours(picture: Color, colours: OwnColours, box: PixelBox) -> bool:
     """Tell whether what is in `box` looks rather like the thing than like any of the picture."""
-    return bool(_cut(evidence(picture, colours), box).mean() > 0.0)
+    return bool(cut_to(evidence(picture, colours), box).mean() > 0.0)
 
 
-def _bins(picture: Color) -> Bins:
+def colour_bins(picture: Color) -> Bins:
+    """Return (height, width) the colour of each pixel, as a bin."""
     lightness, a, b = cv2.split(cv2.cvtColor(picture, cv2.COLOR_BGR2LAB).astype(np.intp))
     return np.asarray((lightness * _SHADES // 256 * _HUES + a * _HUES // 256) * _HUES + b * _HUES // 256)
 
 
-def _cut(values: T, box: PixelBox) -> T:
-    height, width = values.shape
+def cut_to(values: T, box: PixelBox) -> T:
+    """Return what of values (height, width, ...) lies in a box, one pixel at least."""
+    height, width = values.shape[:2]
     left, top = min(max(0, round(box.left)), width - 1), min(max(0, round(box.top)), height - 1)
     return values[top : max(top, round(box.bottom)) + 1, left : max(left, round(box.right)) + 1]
 
 
-def _counts(bins: Bins) -> FloatArray:
+def counts_of(bins: Bins) -> FloatArray:
+    """Return (bins,) how many pixels have each colour."""
     return np.bincount(bins.ravel(), minlength=_SHADES * _HUES**2).astype(np.float64)
 
 
-def _shares(counts: FloatArray) -> FloatArray:
-    cube = gaussian_filter(counts.reshape(_SHADES, _HUES, _HUES), _ALIKE, mode="nearest")
+def shares_of(counts: FloatArray, alike: tuple[float, float, float] = _ALIKE) -> FloatArray:
+    """Return the share of each colour, of counts (bins,), with what looks alike: one sigma [bins]."""
+    cube = gaussian_filter(counts.reshape(_SHADES, _HUES, _HUES), alike, mode="nearest")
     return np.asarray(cube.ravel() / max(1.0, float(counts.sum())))

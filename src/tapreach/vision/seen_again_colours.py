@@ -29,6 +29,9 @@ _PER_SIGMA = 0.15
 """What a squared sigma off the expected place takes from them."""
 _APART = 1.5
 """What overlaps the best place, in half sizes, is no other place."""
+_AGAINST = -1.0
+"""Log odds below which the inside speaks against the thing, whatever is around it: of a white cup with blue
+dots, on a bright floor, most does."""
 _NOWHERE = -9.0
 
 
@@ -106,7 +109,7 @@ def _fit(total: FloatArray, columns: FloatArray, rows: FloatArray, across: float
         mean(-a, a, -above - wide, -above),
         mean(-a, a, above, above + wide),
     ]
-    return np.where(inside > 0.0, inside - np.sort(around, axis=0)[-2], _NOWHERE)
+    return np.where(inside > _AGAINST, inside - np.sort(around, axis=0)[-2], _NOWHERE)
 
 
 def _means(

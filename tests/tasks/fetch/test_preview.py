@@ -141,6 +141,16 @@ def test_outline_too_wide_is_looked_at_from_near_before_it_is_believed():
     assert preview(by_picture(far), [], HERE, ROBOT, is_last_look=True).verdict is Verdict.NO
 
 
+def test_narrow_thing_that_seems_to_have_no_upper_end_is_looked_at_from_near_before_it_is_refused():
+    """As a cup before the leg of a table."""
+    thing = by_picture(thing_at(0.8, 0.0, width=0.05, height=0.34), told=3)
+    endless = replace(thing, size=replace(thing.size, goes_on_above=True))
+    assert preview(endless, [], HERE, ROBOT).verdict is Verdict.UNSURE
+    assert preview(endless, [], HERE, ROBOT, is_last_look=True).verdict is Verdict.NO
+    wide = replace(endless, size=replace(endless.size, width=0.2))
+    assert preview(wide, [], HERE, ROBOT).verdict is Verdict.NO
+
+
 def by_picture(thing, told=2):
     return replace(thing, size=replace(thing.size, by_picture=True, told=told))
 

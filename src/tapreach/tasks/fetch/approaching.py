@@ -1,11 +1,13 @@
 """Driving up to the thing, leg by leg, each planned anew from what is known by then."""
 
 import math
+from contextlib import suppress
 
 import numpy as np
 
 from tapreach.geometry.planar_motion import PlanarStep
-from tapreach.tasks.fetch.approach import Approach, Leg
+from tapreach.tasks.fetch.approach import NEAR_SHARE, Approach, Leg
+from tapreach.tasks.fetch.as_tapped import looks_as_tapped
 from tapreach.tasks.fetch.blocked import back_off_from
 from tapreach.tasks.fetch.followed_from_here import follow_from_here, has_grown
 from tapreach.tasks.fetch.glance import glance
@@ -15,9 +17,11 @@ from tapreach.tasks.fetch.preview import ReachPreview
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
-from tapreach.tasks.fetch.thing import ThingSize
+from tapreach.tasks.fetch.stepping_back import BACK, LEAST_BACK, found_from_farther
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import TargetLost
+from tapreach.tasks.free_way import way_behind
 
 MOST_LEGS = 14
 BLIND_SD = 0.006
@@ -28,6 +32,11 @@ LONGEST_LEG = 0.4
 """Farther than this the thing is not driven towards without planning anew [m]."""
 NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.03, math.radians(3.0)
 """A leg as short as this needs not be driven before the last look."""
+
+OTHER_COLOURS = (
+    "what stands there does not have the colours of the spot that was tapped: it is probably another thing; "
+    "tap it again from nearer"
+)
 
 
 async def approach(run: FetchRun) -> Ended:
@@ -47,7 +56,7 @@ async def approach(run: FetchRun) -> Ended:
         try:
             blocked = await drive(run, leg)
         except TargetLost as lost:
-            return await _anew(run) or Ended(Outcome.LOST, str(lost))
+            return await _anew(run, steps_back=True) or Ended(Outcome.LOST, str(lost))
         if blocked and (ended := await back_off_from(run, blocked)):
             return ended
         await measure(run)
@@ -68,18 +77,24 @@ async def _not_arrived(run: FetchRun) -> str:
 async def last_look(run: FetchRun) -> Ended:
     """Measure the thing from near and decide on the grasp."""
     is_lost = _is_lost(run, BLIND_SD)
-    if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := await _anew(run)):
+    if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := await _anew(run, steps_back=is_lost)):
         return anew
     if is_lost and (doubtful := refused_unseen(run.thing(), run.filed_claw, _loss(run))):
         return Ended(Outcome.CANNOT, doubtful)
     if is_lost:
         return Ended(Outcome.LOST, f"lost the thing, {_known_to(run)}: {_loss(run)}")
     await measure(run)
+    if isinstance(run.size, NoSize):
+        if anew := await _measured_anew(run):
+            return anew
+        run.believe_one_view()
     seen = run.preview = await previewed(run, is_last_look=True)
     if seen.verdict is Verdict.NO or seen.approach is None:
         return Ended(Outcome.CANNOT, in_words(seen))
     if next_leg(seen.approach) is not None:
         return _from_elsewhere(run, seen)
+    if seen.verdict is Verdict.YES and not await looks_as_tapped(run):
+        return Ended(Outcome.LOST, OTHER_COLOURS)
     return Ended(Outcome.DONE if seen.verdict is Verdict.YES else Outcome.CANNOT, in_words(seen))
 
 
@@ -93,14 +108,30 @@ def _from_elsewhere(run: FetchRun, seen: ReachPreview) -> Ended:
     return Ended(Outcome.MISSED, "measured from near, it is to be gripped from elsewhere")
 
 
-async def _anew(run: FetchRun) -> Ended | None:
-    """End with locating the thing from here, if it is found in the picture, and not too often before."""
+async def _anew(run: FetchRun, steps_back: bool = False) -> Ended | None:
+    """End with locating the thing from here, if it is found in the picture, or else from a step farther back,
+    and not too often before.
+    """
     if not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
         return None
-    if (still_followed(run) or await tap_again(run) or await tap_unseen(run)) is None:
+    known_to = _known_to(run)
+    tap = still_followed(run) or await tap_again(run) or await tap_unseen(run)
+    if tap is None and (not steps_back or await found_from_farther(run) is None):
         return None
     run.remember(looks=run.memory.looks + 1)
-    return Ended(Outcome.UNSURE, f"{_known_to(run)}: located anew")
+    return Ended(Outcome.UNSURE, f"{known_to}: located anew")
+
+
+async def _measured_anew(run: FetchRun) -> Ended | None:
+    """Back off from what could not be measured and end with locating it from there; None where that was done,
+    where the floor behind is not known to be free, or where nothing is followed there.
+    """
+    back = min(BACK, way_behind(run.context.poses))
+    if back < LEAST_BACK or not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
+        return None
+    with suppress(TargetLost):
+        await drive(run, Leg(PlanarStep(0.0, -back), NEAR_SHARE, sees_thing=True))
+    return await _anew(run)
 
 
 def _is_lost(run: FetchRun, sd: float) -> bool:

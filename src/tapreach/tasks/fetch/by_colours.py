@@ -14,11 +14,13 @@ from tapreach.tasks.sighting import Sighting
 from tapreach.tasks.task import Tap
 from tapreach.vision.extent_place import place_to_follow
 from tapreach.vision.image_io import BrokenPicture, decode_color, decode_gray
-from tapreach.vision.own_colours import OwnColours, has_colours, own_colours
+from tapreach.vision.own_colours import OwnColours, evidence, has_colours, own_colours
 from tapreach.vision.seen_again_colours import ExpectedBox, box_by_colours
 
 _SURELY_ITS = 0.5
 """So much of the thing around a spot of it is its own."""
+_SURELY_COMMON = 0.5
+"""What has so much in common with the colours known shows the thing: Bhattacharyya's coefficient."""
 
 
 async def learn_colours(run: FetchRun) -> None:
@@ -54,10 +56,10 @@ async def _colours_in(run: FetchRun, known: KnownThing, sighting: Sighting) -> O
 def _with_view(known: OwnColours | None, jpeg: bytes, box: PixelBox) -> OwnColours | None:
     """Return the colours known with those of what fills `box`; as they are where that shows others."""
     picture = decode_color(jpeg)
-    if isinstance(picture, BrokenPicture) or (known and not has_colours(picture, known, box)):
-        return known
-    seen = own_colours(picture, box)
-    return known.joined(seen) if known and seen else seen or known
+    seen = None if isinstance(picture, BrokenPicture) else own_colours(picture, box)
+    if known is None or seen is None:
+        return known or seen
+    return known.joined(seen) if known.common(seen) > _SURELY_COMMON else known
 
 
 async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap | None:
@@ -93,7 +95,8 @@ def _found(jpeg: bytes, colours: OwnColours, there: ExpectedBox) -> tuple[PixelB
     box = box_by_colours(picture, colours, there)
     if box is None:
         return None
-    return box, place_to_follow(gray, box.within(ImageSize(gray.shape[1], gray.shape[0])))
+    shown = box.within(ImageSize(gray.shape[1], gray.shape[0]))
+    return box, place_to_follow(gray, shown, evidence(picture, colours) > 0.0)
 
 
 async def is_of_its_colours(run: FetchRun, frame: Frame, pixel: Pixel, here: PlanarPose) -> bool:

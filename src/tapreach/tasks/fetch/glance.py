@@ -7,10 +7,9 @@ import math
 
 import numpy as np
 
-from tapreach.geometry.planar_motion import PlanarStep, wrapped
-from tapreach.tasks.candidate_moves import Grid
-from tapreach.tasks.clear_moves import ClearMoves
+from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch.approach import Leg
+from tapreach.tasks.fetch.facing import turn_to_face
 from tapreach.tasks.fetch.run import FetchRun
 
 UNSEEN_WAY = 0.35
@@ -26,12 +25,10 @@ def glance(run: FetchRun, unseen_way: float) -> Leg | None:
 
     unseen_way: driven since it was seen [m].
     """
-    point, here = run.thing().point_in_world, run.here
-    off = point[:2] - [here.x, here.y]
-    turn = wrapped(math.atan2(off[1], off[0]) - here.heading)
-    if unseen_way < UNSEEN_WAY or float(np.hypot(*off)) < _NEAREST or abs(turn) > _MOST_TURN:
+    off = run.thing().point_in_world[:2] - [run.here.x, run.here.y]
+    if unseen_way < UNSEEN_WAY or float(np.hypot(*off)) < _NEAREST:
         return None
-    around = (*run.others, *run.around.in_world())
-    room = ClearMoves(around, [point], here, run.context.description)
-    is_clear = room.of(Grid(np.array([turn]), np.array([0.0])))
-    return Leg(PlanarStep(turn, 0.0), 1.0, sees_thing=True) if is_clear.all() else None
+    turn = turn_to_face(run)
+    if turn is None or abs(turn) > _MOST_TURN:
+        return None
+    return Leg(PlanarStep(turn, 0.0), 1.0, sees_thing=True)

@@ -159,12 +159,17 @@ def held_in(
     ]
     finger = description.arm.shape().finger_thickness
     widest = description.arm.claw_max / 2.0 + finger
-    least = max(LEAST_THING, _LEAST_SHARE * min(thing_width, description.arm.claw_max))
+    least = least_opening(thing_width, description)
     width = claw_width(looks, finger + 0.001, finger + least / 2.0, widest)
     opening = max(0.0, 2.0 * (width.half_width - finger))
     if width.disagreement > MOST_DISAGREEMENT and not is_short:
         return replace(_unsure("something else moved beside the claw, or hides it"), opening=opening)
     return _verdict(width.log_odds + (BY_SERVO if is_short else 0.0), opening)
+
+
+def least_opening(thing_width: float, description: RobotDescription) -> float:
+    """Return how far the fingers are apart at least with a thing between them that was seen so wide [m]."""
+    return max(LEAST_THING, _LEAST_SHARE * min(thing_width, description.arm.claw_max))
 
 
 def _verdict(log_odds: float, opening: float) -> Held:

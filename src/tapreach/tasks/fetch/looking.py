@@ -10,6 +10,7 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.pixel import Pixel
 from tapreach.tasks.aiming import aimed
 from tapreach.tasks.camera_delay import know_delay
+from tapreach.tasks.fetch.as_tapped import remember_tapped
 from tapreach.tasks.fetch.by_colours import learn_colours
 from tapreach.tasks.fetch.fetch_state import FetchPlan, Mode
 from tapreach.tasks.fetch.looking_again import (
@@ -25,6 +26,7 @@ from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.states import Outcome
+from tapreach.tasks.fetch.stepping_back import found_from_farther
 from tapreach.tasks.fetch.surroundings import to_plan_round
 from tapreach.tasks.fetch.thing import NoSize
 from tapreach.tasks.fetch.too_high import refused_by_sight, refused_unlocated, tap_within_reach_up_to
@@ -32,13 +34,14 @@ from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
 from tapreach.tasks.locate import Locating
+from tapreach.tasks.locate_watch import is_blocked
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap
 
 ACCURACY = 0.02
 """Relative error of the range, one sigma, at which driving up begins: it is estimated on on the way."""
-MOST_LOOKS = 3
+MOST_LOOKS = 5
 _HARDLY_KNOWN = 0.1
 """A relative error of the range, one sigma, beyond which it is not driven up to what is not seen."""
 GRASPING_SECONDS = 20.0
@@ -47,23 +50,27 @@ GRASPING_SECONDS = 20.0
 
 async def look(run: FetchRun) -> Ended:
     """Locate the thing and measure it, unless it is too high by its line of sight alone; what was lost before
-    much was known of its place is looked for once more. Raises as LocateTask.run.
+    much was known of its place, or could not be located, is looked at once more. Raises as LocateTask.run.
     """
     ended = await _look_once(run)
-    if ended.outcome is not Outcome.DONE or not _was_lost_early(run) or await tap_again(run) is None:
+    if run.memory.looks >= MOST_LOOKS or not await _is_worth_another_look(run, ended):
         return ended
     run.remember(looks=run.memory.looks + 1)
     return await _look_once(run)
 
 
-def _was_lost_early(run: FetchRun) -> bool:
+async def _is_worth_another_look(run: FetchRun, ended: Ended) -> bool:
     locating = run.locating
-    if locating is None or locating.estimate is None or run.memory.looks >= MOST_LOOKS:
+    if locating is None or locating.estimate is None:
         return False
-    return bool(locating.follower.loss) and locating.estimate.relative_sd > _HARDLY_KNOWN
+    if ended.outcome is Outcome.UNSURE:
+        return not locating.follower.loss and not is_blocked(locating.follower.sightings)
+    was_lost_early = bool(locating.follower.loss) and locating.estimate.relative_sd > _HARDLY_KNOWN
+    return ended.outcome is Outcome.DONE and was_lost_early and await tap_again(run) is not None
 
 
 async def _look_once(run: FetchRun) -> Ended:
+    is_operators = run.memory.known is None
     tap = await _tap(run)
     if tap is None:
         return Ended(
@@ -94,6 +101,8 @@ async def _look_once(run: FetchRun) -> Ended:
     point = run.thing().point_in_world
     run.measured(run.locating.size or NoSize("it was not measured"), point)
     keep_what_is_known(run)
+    if is_operators:
+        await remember_tapped(run)
     await learn_colours(run)
     return Ended(Outcome.DONE, sentence)
 
@@ -194,6 +203,7 @@ async def _tap(run: FetchRun) -> Tap | None:
     if memory.known is None:
         return memory.tap
     tap = still_followed(run) or await tap_again(run) or memory.seen_again or await tap_unseen(run)
+    tap = tap or await found_from_farther(run)
     if tap is not None:
         run.remember(tap=tap, seen_again=None)
     return tap

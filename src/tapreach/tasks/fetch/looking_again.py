@@ -84,7 +84,7 @@ async def tap_again(run: FetchRun) -> Tap | None:
     if run.memory.known is None:
         return None
     await _out_of_the_picture(run)
-    frame = await _frame_from_now_on(run.context)
+    frame = await frame_from_now_on(run.context)
     here = await pose_at(run.context, frame.captured_ns)
     return await tap_by_colours(run, frame, here) or await _tap_by_looks(run, run.memory.known, frame, here)
 
@@ -106,7 +106,7 @@ async def _tap_by_looks(run: FetchRun, known: KnownThing, frame: Frame, here: Pl
     return Tap(frame.frame_id, pixel.u, pixel.v)
 
 
-async def _frame_from_now_on(context: TaskContext) -> Frame:
+async def frame_from_now_on(context: TaskContext) -> Frame:
     """Return the first picture taken from now on, or what comes after a second of waiting for it."""
     now_ns, newest = context.clock.now_ns(), context.frames.newest
     while True:

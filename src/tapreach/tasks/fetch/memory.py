@@ -9,6 +9,7 @@ from tapreach.tasks.fetch.fetch_state import Mode
 from tapreach.tasks.fetch.known_thing import KnownThing
 from tapreach.tasks.fetch.states import FIRST, Phase
 from tapreach.tasks.task import Tap
+from tapreach.vision.tapped_colours import TappedSpot
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class FetchMemory:
     the first. seen_again: where the thing was seen after a miss, None where it was not. gripped_at: the arm's
     pose when the claw closed, None while nothing has been gripped. zero: the arm as it was seen. way: where
     the base has been since. other_sides: how often it was too wide from near, and another side was sought.
-    was_blocked: something on the way has blocked the robot. is_agreed: the operator was asked, and agreed.
+    was_blocked: something on the way has blocked the robot. tapped: how the spot looked that the operator
+    tapped, once its distance is known. is_agreed: the operator was asked, and agreed.
     """
 
     tap: Tap
@@ -37,4 +39,5 @@ class FetchMemory:
     way: tuple[PlanarPose, ...] = ()
     other_sides: int = 0
     was_blocked: bool = False
+    tapped: TappedSpot | None = None
     is_agreed: bool = False

@@ -131,11 +131,13 @@ def _believed(size: ThingSize | NoSize, world_from_base: PlanarPose, body: Body)
     """
     if isinstance(size, NoSize) or not size.by_picture:
         return size
+    is_too_wide = size.width > body.claw.opens_to
     stands_on = size.goes_on_above and size.foot <= OFF_FLOOR
-    if size.width <= body.claw.opens_to and not stands_on:
+    if not is_too_wide and not stands_on:
         return size
     off = np.asarray(size.axis_in_world)[:2] - [world_from_base.x, world_from_base.y]
-    if float(np.hypot(*off)) <= WIDTH_TOLD_WITHIN and size.told >= WIDTH_TOLD:
+    is_near = float(np.hypot(*off)) <= WIDTH_TOLD_WITHIN
+    if is_too_wide and is_near and size.told >= WIDTH_TOLD:
         return size
     looks = f"{1000.0 * size.width:.0f} mm wide and {1000.0 * size.height:.0f} mm high"
     return NoSize(f"it looks {looks} from here; what stands close to it may pass for part of it")

@@ -151,6 +151,13 @@ class FetchRun:
         if isinstance(self.size, ThingSize):
             self.size = replace(self.size, seen=self.seen)
 
+    def believe_one_view(self) -> None:
+        """Take the size that a single view has told, where none is known and no better one is to come."""
+        alone = self.size.by_one_view if isinstance(self.size, NoSize) else None
+        if alone is not None:
+            self.axis_offset = np.asarray(alone.axis_in_world - self.thing().point_in_world)
+            self.size = replace(self.sized_along(alone), seen=self.seen)
+
     def sized_along(self, size: ThingSize) -> ThingSize:
         """Return a size with the direction of the sight across which it was measured, for later looks."""
         return size.seen_from(self.here)
