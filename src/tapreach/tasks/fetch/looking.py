@@ -53,20 +53,25 @@ async def look(run: FetchRun) -> Ended:
     much was known of its place, or could not be located, is looked at once more. Raises as LocateTask.run.
     """
     ended = await _look_once(run)
-    if run.memory.looks >= MOST_LOOKS or not await _is_worth_another_look(run, ended):
+    could_not = ended.outcome is Outcome.UNSURE and _is_free_and_seen(run)
+    is_worth_more = could_not or (ended.outcome is Outcome.DONE and await _was_lost_early(run))
+    if run.memory.looks >= MOST_LOOKS or not is_worth_more:
         return ended
     run.remember(looks=run.memory.looks + 1)
     return await _look_once(run)
 
 
-async def _is_worth_another_look(run: FetchRun, ended: Ended) -> bool:
+def _is_free_and_seen(run: FetchRun) -> bool:
+    follower = run.locating.follower if run.locating is not None else None
+    return follower is not None and not follower.loss and not is_blocked(follower.sightings)
+
+
+async def _was_lost_early(run: FetchRun) -> bool:
+    """Tell whether it was lost before much was known of its place, and is seen again."""
     locating = run.locating
-    if locating is None or locating.estimate is None:
+    if locating is None or locating.estimate is None or not locating.follower.loss:
         return False
-    if ended.outcome is Outcome.UNSURE:
-        return not locating.follower.loss and not is_blocked(locating.follower.sightings)
-    was_lost_early = bool(locating.follower.loss) and locating.estimate.relative_sd > _HARDLY_KNOWN
-    return ended.outcome is Outcome.DONE and was_lost_early and await tap_again(run) is not None
+    return locating.estimate.relative_sd > _HARDLY_KNOWN and await tap_again(run) is not None
 
 
 async def _look_once(run: FetchRun) -> Ended:
