@@ -23,7 +23,8 @@ from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import TargetLost
 from tapreach.tasks.free_way import way_behind
 
-MOST_LEGS = 14
+MOST_LEGS = 24
+"""Turns to look at the thing included: a way round several things needs more than a dozen."""
 BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
 LOOK_ANEW_SD = 0.02
