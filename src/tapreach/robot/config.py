@@ -4,7 +4,7 @@ from math import radians
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
@@ -13,8 +13,10 @@ from tapreach.geometry.camera import Camera
 from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.pose import camera_mount
 from tapreach.robot.arm_section import ArmSection
+from tapreach.robot.camera_source import KNOWN_SOURCES, parse_source
+from tapreach.robot.link_section import LinkSection
 from tapreach.robot.section import Finite, Positive, RangeM, Section
-from tapreach.robot.toml_file import load_validated
+from tapreach.robot.toml_file import PlacedValueError, load_validated
 
 
 class MountSection(Section):
@@ -38,8 +40,13 @@ class MountSection(Section):
 
 
 class CameraSection(Section):
-    """The camera: picture, lens, time."""
+    """The camera: source, picture, lens, time."""
 
+    source: str | None = Field(
+        None,
+        description="where the pictures come from: " + KNOWN_SOURCES.replace('"', "'") + "; left out where "
+        "the driver has a camera of its own (sim, fake)",
+    )
     width: int = Field(640, ge=160, le=4096)
     height: int = Field(480, ge=120, le=4096)
     rate_hz: Positive = 30.0
@@ -51,7 +58,8 @@ class CameraSection(Section):
     delay_ms: float = Field(
         0.0,
         ge=0,
-        description="from the middle of the exposure to arrival on the host, as far as known: the driver "
+        description="from the middle of the exposure to arrival on the host (v4l2: to the time stamp of the "
+        "camera's driver), as far as known: the driver "
         "takes it off the times of pictures; what is left the robot measures by itself",
     )
     timing_sigma_ms: float = Field(
@@ -61,6 +69,16 @@ class CameraSection(Section):
         "measured at the first locating",
     )
     mount: MountSection
+
+    @field_validator("source")
+    @classmethod
+    def _names_a_known_source(cls, source: str | None) -> str | None:
+        try:
+            if source is not None:
+                parse_source(source)
+        except InputError as error:
+            raise ValueError(str(error)) from None
+        return source
 
     def model(self) -> Camera:
         """Return the lens model."""
@@ -134,7 +152,7 @@ class RobotDescription(Section):
     """A whole robot file."""
 
     name: str = Field(min_length=1)
-    driver: Literal["sim", "fake"]
+    driver: Literal["arduino", "fake", "sim"]
     camera: CameraSection
     base: BaseSection
     arm: ArmSection
@@ -144,6 +162,18 @@ class RobotDescription(Section):
     simulation: dict[str, object] = Field(
         default_factory=dict, description="scene and faults; see drivers/sim"
     )
+    link: LinkSection | None = Field(None, description="the board of driver 'arduino'")
+
+    @model_validator(mode="after")
+    def _has_what_its_driver_needs(self) -> "RobotDescription":
+        if self.driver == "arduino":
+            if self.link is None:
+                raise ValueError("driver 'arduino' needs the table [link] with the key address")
+            if self.arm.servos is None:
+                raise PlacedValueError("driver 'arduino' needs the tables [arm.servos.*]", "arm")
+        elif self.link is not None:
+            raise PlacedValueError(f"driver {self.driver!r} has no [link]: only 'arduino' has", "link")
+        return self
 
 
 def load_robot(path: Path) -> RobotDescription:
