@@ -7,10 +7,10 @@ from scipy.spatial.transform import RigidTransform
 
 from tapreach.drivers.sim.child_physics import telemetry_of
 from tapreach.drivers.sim.faults import SimFaults
-from tapreach.drivers.sim.host_state import TickOdometry
 from tapreach.drivers.sim.scene import Room, Scene
 from tapreach.drivers.sim.truth import TruthTeller, WorldTruth
 from tapreach.drivers.sim.world import World
+from tapreach.drivers.tick_odometry import TickOdometry
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.resources import resource_path
 from tapreach.robot.config import RobotDescription, load_robot
@@ -28,7 +28,7 @@ class Rig:
         self.odometry = TickOdometry(ROBOT.base)
         self._teller = TruthTeller(self.world.model, scene)
         self.now_ns = 1_000_000_000
-        self.reading = self.odometry.update(telemetry_of(self.world, self.now_ns))
+        self._read()
 
     def drive(self, linear: float, angular: float, duration_s: float) -> None:
         """Send the twist every 10 ms for `duration_s`."""
@@ -41,7 +41,11 @@ class Rig:
         for _ in range(periods):
             self.world.step()
             self.now_ns += 10_000_000
-            self.reading = self.odometry.update(telemetry_of(self.world, self.now_ns))
+            self._read()
+
+    def _read(self) -> None:
+        told = telemetry_of(self.world, self.now_ns)
+        self.reading = self.odometry.update(told.captured_ns, told.left_ticks, told.right_ticks)
 
     @property
     def truth(self) -> WorldTruth:

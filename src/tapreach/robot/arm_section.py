@@ -12,6 +12,7 @@ from tapreach.geometry.arm_kinematics import ArmGeometry, ArmKinematics
 from tapreach.geometry.chain_arm import ChainArm
 from tapreach.robot.messages import ArmPose
 from tapreach.robot.section import Finite, Positive, RangeDeg, Section, Vector3
+from tapreach.robot.servo_section import ServosSection
 
 Range = tuple[float, float]
 _SIZES = ("shoulder_forward", "shoulder_up", "upper_length", "fore_length", "hand_length")
@@ -87,6 +88,7 @@ class ArmSection(Section):
     shoulder_limits_deg: RangeDeg
     elbow_limits_deg: RangeDeg
     speed_deg_s: Positive = Field(140.0, description="fastest servo speed")
+    servos: ServosSection | None = Field(None, description="pulses; needed by driver 'arduino'")
     standard: ArmPoseSection = Field(description="pose for locating: out of the picture")
     stowed: ArmPoseSection = Field(description="pose for driving: out of the picture, folded")
 

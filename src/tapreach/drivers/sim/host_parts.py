@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 
-from tapreach.drivers.sim.host_state import TickOdometry, arm_state, limited_arm, limited_twist
+from tapreach.drivers.limits import limited_arm, limited_twist
+from tapreach.drivers.sim.host_state import arm_state
 from tapreach.drivers.sim.protocol import Drive, Message, MoveArm, Telemetry
+from tapreach.drivers.tick_odometry import TickOdometry
 from tapreach.geometry.pixel import ImageSize
 from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.clock import Clock
@@ -37,7 +39,8 @@ class HostBase:
     def take(self, telemetry: Telemetry) -> None:
         """Take what the board told."""
         self._board_needs_zero = telemetry.needs_zero
-        self._listeners.tell(self._odometry.update(telemetry))
+        counted = telemetry.left_ticks, telemetry.right_ticks
+        self._listeners.tell(self._odometry.update(telemetry.captured_ns, *counted))
 
 
 class HostArm:

@@ -1,0 +1,1 @@
+"""A robot with a microcontroller board at the end of a serial link."""
