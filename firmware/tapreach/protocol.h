@@ -30,7 +30,8 @@ constexpr uint8_t OUT_OF_RANGE = 3;  // a value is outside its limits
 constexpr uint8_t TOO_OLD = 4;  // at_ms is too old, or ahead of the firmware's clock
 constexpr uint8_t NEEDS_ZERO = 5;  // wheels need a drive of 0, 0 first
 constexpr uint8_t FAULTED = 6;  // a latched fault stands; clear it first
-constexpr uint8_t BUSY = 7;  // a relative move is going on
+constexpr uint8_t BUSY = 7;  // a relative move is going on, or the wheels still turn
+constexpr uint8_t NO_SESSION = 8;  // no Hello since boot, or silent for too long since
 }
 
 // What the wheels are doing.
@@ -46,7 +47,7 @@ constexpr uint8_t FAULTED = 5;  // off by a latched fault
 // How a relative move ended.
 namespace move_result {
 constexpr uint8_t DONE = 0;  // at rest within the tolerance
-constexpr uint8_t STOPPED = 1;  // by a stop or another command
+constexpr uint8_t STOPPED = 1;  // by a Stop, a Drive of 0, 0 or a new Hello
 constexpr uint8_t TRIPPED = 2;  // by the deadman
 constexpr uint8_t FAULTED = 3;  // by a fault
 constexpr uint8_t STALLED = 4;  // not at rest in time: the wheels do not follow
@@ -102,7 +103,7 @@ struct Drive {
   static constexpr uint8_t TYPE = 0x02, SIZE = 8;
   int16_t left;  // [ticks/s], forward positive
   int16_t right;  // [ticks/s], forward positive
-  uint32_t at_ms;  // the firmware's clock at sending, as the host believes it [ms]
+  uint32_t at_ms;  // the firmware's microseconds at sending, as the host believes, wraps counted, over 1000
   void read(const uint8_t* body) {
     BodyReader reader{body};
     reader.take(left);

@@ -33,7 +33,8 @@ class Result(IntEnum):
     TOO_OLD = 4  # at_ms is too old, or ahead of the firmware's clock
     NEEDS_ZERO = 5  # wheels need a drive of 0, 0 first
     FAULTED = 6  # a latched fault stands; clear it first
-    BUSY = 7  # a relative move is going on
+    BUSY = 7  # a relative move is going on, or the wheels still turn
+    NO_SESSION = 8  # no Hello since boot, or silent for too long since
 
 
 class State(IntEnum):
@@ -51,7 +52,7 @@ class MoveResult(IntEnum):
     """How a relative move ended."""
 
     DONE = 0  # at rest within the tolerance
-    STOPPED = 1  # by a stop or another command
+    STOPPED = 1  # by a Stop, a Drive of 0, 0 or a new Hello
     TRIPPED = 2  # by the deadman
     FAULTED = 3  # by a fault
     STALLED = 4  # not at rest in time: the wheels do not follow
@@ -127,7 +128,7 @@ class Drive:
 
     left: int  # [ticks/s], forward positive
     right: int  # [ticks/s], forward positive
-    at_ms: int  # the firmware's clock at sending, as the host believes it [ms]
+    at_ms: int  # the firmware's microseconds at sending, as the host believes, wraps counted, over 1000
 
     def pack(self) -> bytes:
         """Return the body."""
