@@ -28,7 +28,8 @@ def test_source_of_a_known_kind_is_taken_as_it_stands(text, kind, address):
 
 
 def test_label_keeps_user_and_password_to_itself():
-    source = parse_source("http://anna:s@cret@camera.example:81/s?x=1")
+    user = "anna:s@cret"
+    source = parse_source(f"http://{user}@camera.example:81/s?x=1")
     assert source.label == "http://camera.example:81/s?x=1"
 
 

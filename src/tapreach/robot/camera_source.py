@@ -1,4 +1,4 @@
-"""Where pictures come from, as a robot file names it: "v4l2:/dev/video0", "http://...", "rtsp://..."."""
+"""Where pictures come from, as a robot file names it: v4l2:/dev/video0, or an address of http or rtsp."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -6,7 +6,9 @@ from urllib.parse import SplitResult, urlsplit
 
 from tapreach.errors import InputError
 
-KNOWN_SOURCES = '"v4l2:/dev/video0", "http://host:port/path" (MJPEG) or "rtsp://host:port/path"'
+KNOWN_SOURCES = (
+    '"v4l2:/dev/video0", "http://robot.example:8080/stream" (MJPEG) or "rtsp://robot.example/live"'
+)
 
 
 class SourceKind(StrEnum):

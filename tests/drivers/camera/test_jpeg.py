@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.drivers.camera.pictures import jpeg
 
 from tapreach.drivers.camera.jpeg import BrokenJpeg, JpegWalk, whole_jpeg
 from tapreach.geometry.pixel import ImageSize
-from tests.drivers.camera.pictures import jpeg
 
 # A thumbnail inside of an Exif segment has an end mark of its own.
 EXIF = (

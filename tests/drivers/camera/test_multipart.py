@@ -1,11 +1,13 @@
 """Pictures come whole out of a stream, wherever its bytes are cut and whatever lies between them."""
 
+import itertools
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.drivers.camera.pictures import jpeg, part
 
 from tapreach.drivers.camera.multipart import MOST_HEADER_BYTES, MultipartParser
-from tests.drivers.camera.pictures import jpeg, part
 
 JPEGS = [jpeg(seed) for seed in range(3)]
 
@@ -13,7 +15,7 @@ JPEGS = [jpeg(seed) for seed in range(3)]
 def jpegs_of(stream: bytes, cuts: list[int], boundary: str = "frame") -> tuple[list[bytes], int]:
     parser, found = MultipartParser(boundary), []
     edges = [0, *sorted(min(cut, len(stream)) for cut in cuts), len(stream)]
-    for begin, end in zip(edges, edges[1:], strict=False):
+    for begin, end in itertools.pairwise(edges):
         found += [part.jpeg for part in parser.feed(stream[begin:end])]
     return found, parser.skipped
 
