@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.drivers.arduino.memory import clocked_robot
 
 from tapreach.drivers.fake import FakeRobot
 from tapreach.drivers.sim.inline import InlineSimRobot
@@ -97,7 +98,12 @@ def sim_rig() -> Rig:
     return Rig(SimRobot(description, scene, clock, faults), clock)
 
 
-RIGS = {"fake": fake_rig, "sim inline": sim_inline_rig, "sim process": sim_rig}
+def arduino_rig() -> Rig:
+    robot = clocked_robot()
+    return Rig(robot, robot.clock)
+
+
+RIGS = {"fake": fake_rig, "sim inline": sim_inline_rig, "sim process": sim_rig, "arduino": arduino_rig}
 Scenario = Callable[[Rig], Awaitable[None]]
 
 

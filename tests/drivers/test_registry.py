@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_unknown_driver_is_refused_with_the_known_names():
-    with pytest.raises(ConfigError, match=r"no driver 'tank'; known are fake, sim"):
+    with pytest.raises(ConfigError, match=r"no driver 'tank'; known are arduino, fake, sim"):
         factory_of("tank")
 
 

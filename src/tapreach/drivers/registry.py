@@ -9,6 +9,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.robot.interface import Robot
 
 FACTORIES = {
+    "arduino": "tapreach.drivers.arduino.factory:make_arduino_robot",
     "fake": "tapreach.drivers.fake:FakeRobot",
     "sim": "tapreach.drivers.sim.factory:make_sim_robot",
 }

@@ -42,10 +42,6 @@ class Servo:
         ends = sorted((self.value(self.low_us), self.value(self.high_us)))
         return max(ends[0], min(ends[1], value))
 
-    def nearness(self) -> float:
-        """Return what one microsecond makes: nearer than this a pulse does not tell."""
-        return 1.0 / abs(self.us_per_unit)
-
 
 class ServoMap:
     """The four servos of an arm. Raises ConfigError where the robot file has no [arm.servos]."""
@@ -70,14 +66,10 @@ class ServoMap:
         return a, b, c, d
 
     def pose(self, pulses_us: Four | Pulses) -> ArmPose:
-        """Return the pose that these pulses make; where a pulse is 0 (none sent yet), the stowed one's value."""
+        """Return the pose that these pulses make; where one is 0 (never sent) the joint counts as stowed."""
         stowed = values_of(self._arm.stowed.pose())
         given = zip(self.servos, pulses_us, stowed, strict=True)
         return ArmPose(*(servo.value(pulse) if pulse else rest for servo, pulse, rest in given))
-
-    def differs(self, one: Four | Pulses, other: Four | Pulses, by_us: float = 0.0) -> bool:
-        """Return whether any pulse is further than `by_us` from its fellow; unsent pulses (0) never are."""
-        return any(a and b and abs(a - b) > by_us for a, b in zip(one, other, strict=True))
 
     def speeds_us_per_s(self) -> Pulses:
         """Return the speed limits of A, B, C and D from the robot file's speed_deg_s."""

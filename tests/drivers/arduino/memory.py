@@ -1,0 +1,124 @@
+"""A robot and its peer by a clock that is turned by hand: bytes go over without a line, in order, at once."""
+
+import asyncio
+from contextlib import suppress
+from typing import Any
+
+from tests.drivers.arduino.peer import PeerBoard
+from tests.drivers.arduino.rig import description_for
+
+from tapreach.drivers.arduino.parts import NoCamera
+from tapreach.drivers.arduino.robot import ArduinoRobot
+from tapreach.drivers.fake_picture import FakePicture
+from tapreach.geometry.pixel import ImageSize
+from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.robot.clock import MS, ManualClock
+from tapreach.robot.config import RobotDescription
+from tapreach.robot.messages import Frame
+
+STEP_NS = 5 * MS
+
+
+class MemoryPort:
+    """Both ends of a line."""
+
+    def __init__(self, board: Any, hear: Any, end: Any) -> None:
+        self._board, self.end = board, end
+        board.write = hear
+
+    def write(self, data: bytes) -> None:
+        self._board.take(data)
+
+    def close(self) -> None:
+        self._board.write = lambda data: None
+
+
+class ClockedCamera(NoCamera):
+    """Tells the same drawn picture 20 times a second of the clock."""
+
+    def __init__(self, description: RobotDescription, clock: ManualClock) -> None:
+        super().__init__()
+        self._section, self._clock = description.camera, clock
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        self._task = asyncio.create_task(self._run())
+
+    async def close(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.wait([self._task])
+
+    async def _run(self) -> None:
+        jpeg = FakePicture(self._section).jpeg(PlanarPose(), "peer")
+        size = ImageSize(self._section.width, self._section.height)
+        for frame_id in range(1, 10**9):
+            now_ns = self._clock.now_ns()
+            self._listeners.tell(Frame(frame_id, now_ns, now_ns, size, jpeg))
+            await self._clock.sleep_until(now_ns + 50 * MS)
+
+
+class ClockedRobot(ArduinoRobot):
+    """Brings its peer; `connect` turns the clock until it is connected."""
+
+    def __init__(self, board: Any, clock: ManualClock, file: str = "rover-pi", **link: Any) -> None:
+        description = description_for("/dev/peer", file, **link)
+        super().__init__(description, clock, ClockedCamera, self._open)
+        self.board, self.clock = board, clock
+        self.port: MemoryPort | None = None
+        self.is_plugged = True
+        self._steps: asyncio.Task[None] | None = None
+
+    def _open(self, section: Any, hear: Any, end: Any) -> MemoryPort:
+        if not self.is_plugged:
+            raise FileNotFoundError(2, "no such device")
+        self.port = MemoryPort(self.board, hear, end)
+        return self.port
+
+    def unplug(self) -> None:
+        self.is_plugged = False
+        self.board.write = lambda data: None
+        self.port.end(OSError(5, "Input/output error"))
+
+    async def connect(self) -> None:
+        self._steps = asyncio.create_task(self._step())
+        connecting = asyncio.create_task(super().connect())
+        while not connecting.done():
+            await self.pass_time(10 * MS)
+        await connecting
+
+    async def pass_time(self, duration_ns: int) -> None:
+        """Let time pass; opening and closing happen in real threads, so give them a real moment."""
+        for _ in range(max(1, duration_ns // (10 * MS))):
+            await self.clock.advance(10 * MS)
+            await asyncio.sleep(0.0005 if not self._link.is_open else 0)
+
+    async def until(self, holds: Any, each: Any = None, patience_s: float = 20.0) -> None:
+        for _ in range(round(patience_s / 0.02)):
+            if holds():
+                return
+            if each is not None:
+                each()
+            await self.pass_time(20 * MS)
+        raise AssertionError("waited in vain")
+
+    async def close(self) -> None:
+        closing = asyncio.create_task(super().close())
+        while not closing.done():
+            await self.clock.advance(MS)
+            await asyncio.sleep(0.0005)
+        await closing
+        if self._steps is not None:
+            self._steps.cancel()
+            with suppress(asyncio.CancelledError):
+                await self._steps
+
+    async def _step(self) -> None:
+        while True:
+            self.board.step()
+            await self.clock.sleep_until(self.clock.now_ns() + STEP_NS)
+
+
+def clocked_robot(**board: Any) -> ClockedRobot:
+    clock = ManualClock()
+    return ClockedRobot(PeerBoard(clock, **board), clock)
