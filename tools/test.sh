@@ -8,6 +8,7 @@ cd "$(dirname "$0")/.."
 . tools/lib/graphics.sh
 . tools/lib/browser.sh
 . tools/lib/node_env.sh
+. tools/lib/avr.sh
 
 prepare() {
   want_python_packages
@@ -15,6 +16,7 @@ prepare() {
   want_node_packages
   required=$missing_packages
   want_graphics_packages
+  want_avr_packages
   install_packages || [ -z "$required" ] || explain_missing_packages
   ensure_venv
   ensure_package "[dev]"

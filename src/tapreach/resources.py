@@ -9,7 +9,7 @@ _CHECKOUT = Path(__file__).resolve().parents[2]
 
 
 def resource_path(name: str) -> Path:
-    """Return the folder `name` ("web", "scenes", "robots", "models"), from a wheel or from a checkout.
+    """Return the folder `name` ("web", "scenes", "robots", "models", "firmware") of a wheel or a checkout.
 
     Raises SetupError where the installation is incomplete.
     """

@@ -8,6 +8,7 @@ from rich.console import Console
 from tapreach.cli.bench import bench
 from tapreach.cli.estimate import estimate
 from tapreach.cli.fetch import fetch
+from tapreach.cli.firmware import firmware
 from tapreach.cli.run import run
 from tapreach.cli.two_tap import two_tap
 from tapreach.errors import TapreachError
@@ -25,6 +26,7 @@ app.command()(fetch)
 app.command("two-tap")(two_tap)
 app.command()(estimate)
 app.add_typer(bench)
+app.add_typer(firmware)
 
 
 @app.callback()
