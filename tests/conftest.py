@@ -12,7 +12,8 @@ settings.register_profile("tapreach", deadline=None, derandomize=bool(os.environ
 settings.load_profile("tapreach")
 
 HERE = Path(__file__).parent
-REAL_CLOCK = [HERE / part for part in ("bench", "cli", "client", "scenarios", "server", "web")]
+_REAL_TIME = ("bench", "cli", "client", "drivers/camera", "scenarios", "server", "web")
+REAL_CLOCK = [HERE / part for part in _REAL_TIME]
 """Tests of real browsers, sockets and processes. On a busy machine the safety limits under test (200 ms of
 silence stop the robot) rightly trip, so that one failure says little; two in a row do.
 """

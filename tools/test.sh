@@ -9,6 +9,7 @@ cd "$(dirname "$0")/.."
 . tools/lib/browser.sh
 . tools/lib/node_env.sh
 . tools/lib/avr.sh
+. tools/lib/camera.sh
 
 prepare() {
   want_python_packages
@@ -17,6 +18,7 @@ prepare() {
   required=$missing_packages
   want_graphics_packages
   want_avr_packages
+  want_camera_packages
   install_packages || [ -z "$required" ] || explain_missing_packages
   ensure_venv
   ensure_package "[dev]"

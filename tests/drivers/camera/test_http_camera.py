@@ -119,7 +119,7 @@ def test_stream_that_stalls_is_told_after_a_second_and_opened_anew():
     async def scenario(server, seen):
         await seen.until(lambda: len(seen.frames) >= 3)
         assert [status.is_running for status in seen.statuses] == [False, True, False, False, True]
-        assert "no picture for 1" in seen.statuses[2].reason
+        assert "no picture for" in seen.statuses[2].reason
         gap_ns = seen.frames[1].received_ns - seen.frames[0].received_ns
         assert 2 * SECOND <= gap_ns <= 6 * SECOND
 
