@@ -5,7 +5,7 @@ import os
 import pytest
 from typer.testing import CliRunner
 
-from tapreach.cli.firmware import firmware
+from tapreach.cli.firmware import BoardName, firmware
 from tapreach.drivers.arduino.boards import BOARDS, board_named
 from tapreach.drivers.arduino.build import PACKAGES, build, missing_tools
 from tapreach.errors import InputError, SetupError
@@ -64,6 +64,10 @@ def test_missing_avrdude_is_named_before_anything_is_built(tmp_path, monkeypatch
 def test_definition_that_is_none_is_refused(definition, tmp_path):
     with pytest.raises(InputError, match="is no definition"):
         build(BOARDS["uno"], tmp_path / "firmware.elf", (definition,))
+
+
+def test_command_offers_every_board():
+    assert {name.value for name in BoardName} == set(BOARDS)
 
 
 def test_unknown_board_is_told_the_known_ones():

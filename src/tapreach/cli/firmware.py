@@ -22,7 +22,16 @@ firmware = typer.Typer(
     name="firmware", help="Build the firmware of the robot's board, and flash it.", no_args_is_help=True
 )
 
-BoardName = StrEnum("BoardName", {name.upper(): name for name in BOARDS})
+
+class BoardName(StrEnum):
+    """Boards by the names of BOARDS."""
+
+    UNO = "uno"
+    MEGA = "mega"
+    LEONARDO = "leonardo"
+    YUN = "yun"
+
+
 OneBoard = Annotated[BoardName, typer.Option("--board", help="what it is built for")]
 Definitions = Annotated[
     list[str] | None, typer.Option("-D", help="NAME or NAME=VALUE, such as MOTOR_TB6612 or ENCODER_SINGLE")
