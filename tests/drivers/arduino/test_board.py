@@ -138,7 +138,7 @@ def test_unplugging_in_a_drive_is_said_and_replugging_goes_on_without_a_restart(
         robot.unplug()
         await robot.pass_time(300 * MS)
         assert robot.health.status is LinkStatus.LOST
-        with pytest.raises(LinkLost, match="is not there: plug the board in|unplugged"):
+        with pytest.raises(LinkLost, match=r"is not there: plug the board in|unplugged"):
             robot.base.drive(Twist(0.2, 0.0))
         await robot.pass_time(2 * SECOND)
         assert robot.board.state is State.TRIPPED

@@ -77,8 +77,9 @@ class RosBase:
         self._odometry.rebase()
 
     def lose(self) -> None:
-        """Nobody answers: what is wanted is to stand, and a zero has to come first."""
-        self._twist, self._wanted, self._is_tripped = STILL, (0, 0), True
+        """Nobody answers: what is wanted is to stand; where it drove, a zero has to come first."""
+        self._is_tripped = self._is_tripped or any(self._wanted)
+        self._twist, self._wanted = STILL, (0, 0)
         self._counting = self._driving = False
 
     def halt(self) -> None:
