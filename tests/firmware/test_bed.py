@@ -1,29 +1,16 @@
 """The test bed itself, shown right with a program so small that it can be read (sim/trivial.c)."""
 
-import subprocess
-from pathlib import Path
-
 import pytest
-
-from tests.firmware.sim.avr import Avr, Chip, ResetCause
+from tests.firmware.sim.avr import Avr, ResetCause
 from tests.firmware.sim.needs import needs_bed
+from tests.firmware.sim.trivial import PWM, SERVO, WIRING, A, B, trivial_elf
 
 pytestmark = needs_bed
-TRIVIAL = Path(__file__).parent / "sim" / "trivial.c"
-PWM, SERVO, A, B = ("D", 5), ("B", 1), ("D", 2), ("C", 4)
-
-
-@pytest.fixture(scope="module")
-def elf(tmp_path_factory):
-    target = tmp_path_factory.mktemp("trivial") / "trivial.elf"
-    command = ["avr-gcc", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-Os", "-o", str(target), str(TRIVIAL)]
-    subprocess.run(command, check=True, capture_output=True)
-    return target
 
 
 @pytest.fixture
-def avr(elf):
-    made = Avr(elf, Chip("atmega328p"))
+def avr():
+    made = Avr(trivial_elf(), WIRING.chip)
     made.connect_encoder(0, A, B)
     made.run(6_000)
     yield made

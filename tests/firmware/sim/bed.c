@@ -38,9 +38,11 @@ typedef struct {
 
 typedef struct { struct bed *bed; pin_t *pin; } watched_t;
 
+typedef struct { char port; int bit; } place_t;
+
 typedef struct {
   struct bed *bed;
-  avr_irq_t *a, *b;
+  place_t a, b;
   int64_t edges, wanted; /* fed so far; where the wheel will be */
   double next, spacing;  /* cycle of the next edge; cycles between edges */
   int pending, broken;
@@ -54,6 +56,7 @@ typedef struct bed {
   queue_t in, out;
   pin_t pins[PORTS][8];
   watched_t watched[PORTS][8];
+  uint8_t driven[PORTS], driven_high[PORTS]; /* pins that are driven from outside */
   encoder_t encoders[ENCODERS];
   uint64_t deaf_until; /* cycle; encoders are not heard before */
   uint16_t kept_word; /* what `bed_stall` wrote over */
@@ -109,6 +112,21 @@ static void on_pin(avr_irq_t *irq, uint32_t value, void *param) {
   set_level(watched->bed, watched->pin, value & 1);
 }
 
+static avr_irq_t *pin_irq(bed_t *bed, char port, int bit) {
+  return avr_io_getirq(bed->avr, AVR_IOCTL_IOPORT_GETIRQ(port), bit);
+}
+
+/* simavr 1.6 pulls inputs up again at each write to their port, each edge of a PWM among them, unless it was told of
+ * an outer level. */
+static void drive(bed_t *bed, char port, int bit, int level) {
+  uint8_t *mask = &bed->driven[port - 'A'], *high = &bed->driven_high[port - 'A'];
+  *mask |= 1 << bit;
+  *high = (*high & ~(1 << bit)) | (level != 0) << bit;
+  avr_ioport_external_t outer = {.name = port, .mask = *mask, .value = *high};
+  avr_ioctl(bed->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &outer);
+  avr_raise_irq(pin_irq(bed, port, bit), level);
+}
+
 /* Encoders: edges at even distances until the wheel is where it is wanted. */
 static void one_edge(encoder_t *encoder) {
   static const uint8_t a[4] = {1, 0, 0, 1}, b[4] = {1, 1, 0, 0};
@@ -117,8 +135,8 @@ static void one_edge(encoder_t *encoder) {
   /* Nobody listens right after a reset. And simavr 1.6 takes a low pin for a level interrupt that never ends if it
    * falls before EICRA is set. */
   if (encoder->bed->avr->cycle < encoder->bed->deaf_until) return;
-  avr_raise_irq(encoder->a, a[encoder->edges & 3]);
-  avr_raise_irq(encoder->b, b[encoder->edges & 3]);
+  drive(encoder->bed, encoder->a.port, encoder->a.bit, a[encoder->edges & 3]);
+  drive(encoder->bed, encoder->b.port, encoder->b.bit, b[encoder->edges & 3]);
 }
 static avr_cycle_count_t on_edge(avr_t *avr, avr_cycle_count_t when, void *param) {
   (void)avr, (void)when;
@@ -144,10 +162,6 @@ static void start_encoder(encoder_t *encoder) {
 static void only_errors(avr_t *avr, const int level, const char *format, va_list words) {
   (void)avr;
   if (level <= LOG_ERROR) vfprintf(stderr, format, words);
-}
-
-static avr_irq_t *pin_irq(bed_t *bed, char port, int bit) {
-  return avr_io_getirq(bed->avr, AVR_IOCTL_IOPORT_GETIRQ(port), bit);
 }
 
 static void join_uart(bed_t *bed) {
@@ -202,7 +216,9 @@ void bed_close(bed_t *bed) {
 
 /* Runs to a time; with `until_zero` only to the next 0x00 that comes out. Returns 0, or 1 when the processor died. */
 int bed_run_to(bed_t *bed, double us, int until_zero) {
-  uint64_t end = (uint64_t)cycles_of(bed, us);
+  double cycles = cycles_of(bed, us);
+  uint64_t end = (uint64_t)cycles;
+  if (end < cycles) end++; /* never short of the time that was asked for */
   bed->stopped_on_zero = 0;
   feed(bed);
   while (bed->avr->cycle < end && !(until_zero && bed->stopped_on_zero)) {
@@ -241,7 +257,7 @@ double bed_duty(bed_t *bed, char port, int bit) {
   if (!pin->period || bed->avr->cycle - last > bed->avr->frequency / 50) return pin->level;
   return (double)pin->width / pin->period;
 }
-void bed_drive_pin(bed_t *bed, char port, int bit, int level) { avr_raise_irq(pin_irq(bed, port, bit), level); }
+void bed_drive_pin(bed_t *bed, char port, int bit, int level) { drive(bed, port, bit, level); }
 void bed_adc(bed_t *bed, int channel, uint32_t millivolts) {
   avr_raise_irq(avr_io_getirq(bed->avr, AVR_IOCTL_ADC_GETIRQ, channel), millivolts);
 }
@@ -252,10 +268,10 @@ int bed_memory(bed_t *bed, uint32_t address) {
 void bed_encoder(bed_t *bed, int index, char port_a, int bit_a, char port_b, int bit_b) {
   encoder_t *encoder = &bed->encoders[index];
   encoder->bed = bed;
-  encoder->a = pin_irq(bed, port_a, bit_a);
-  encoder->b = pin_irq(bed, port_b, bit_b);
-  avr_raise_irq(encoder->a, 1); /* both pulled up */
-  avr_raise_irq(encoder->b, 1);
+  encoder->a = (place_t){port_a, bit_a};
+  encoder->b = (place_t){port_b, bit_b};
+  drive(bed, port_a, bit_a, 1); /* both pulled up */
+  drive(bed, port_b, bit_b, 1);
 }
 /* The wheel will have turned by `edges` in all, after `us` from now. */
 void bed_encoder_to(bed_t *bed, int index, int64_t edges, double us) {

@@ -1,4 +1,4 @@
-"""Compiles bed.c into a temporary folder and binds it. GPL-3 code runs in tests alone, and is shipped nowhere."""
+"""Compiles bed.c into a temporary folder and binds it. GPL-3: it runs in tests alone and ships nowhere."""
 
 import ctypes
 import functools

@@ -1,10 +1,9 @@
-"""What the test bed needs from Debian. Skipped where it is missing, but under CI: there it must be installed."""
+"""What the bed needs from Debian. Tests skip where it is missing, but under CI: there it is installed."""
 
 import os
 import shutil
 
 import pytest
-
 from tests.firmware.sim.library import PACKAGES, BedMissing, library
 
 

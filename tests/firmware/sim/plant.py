@@ -1,4 +1,4 @@
-"""A drive base at the pins of a motor driver: two geared motors, and where the base gets to on a flat floor."""
+"""A drive base behind a motor driver: two geared motors, and where the base gets to on a flat floor."""
 
 import math
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ class Plant(Protocol):
 
 @dataclass(frozen=True)
 class Motor:
-    """A geared motor with its share of the robot's mass; it stands still below `breakaway`, as brushes stick."""
+    """A geared motor with its share of the mass; it stands still below `breakaway`, as brushes stick."""
 
     free_speed: float = 17.0
     """[rad/s] at full duty."""
