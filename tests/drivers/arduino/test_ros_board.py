@@ -74,12 +74,12 @@ async def drive(robot, twist, duration_ns):
 
 def test_wheels_speed_up_by_ramps_and_odometry_counts():
     async def scenario(robot):
-        await drive(robot, Twist(0.3, 0.0), SECOND)
+        await drive(robot, Twist(0.25, 0.0), SECOND)
         speeds = [wanted[0] for _, wanted in robot.board.heard if wanted != (0, 0)]
         assert speeds == sorted(speeds)
         assert speeds[0] < 0.4 * speeds[-1]
-        assert robot.base.drive(Twist(0.3, 0.0)).linear == pytest.approx(0.3, abs=0.003)
-        assert robot.odometry[-1].world_from_base.x == pytest.approx(0.3 - 0.3**2 / 1.6, abs=0.04)
+        assert robot.base.drive(Twist(0.25, 0.0)).linear == pytest.approx(0.25, abs=0.003)
+        assert robot.odometry[-1].world_from_base.x == pytest.approx(0.25 - 0.25**2 / 1.6, abs=0.04)
 
     play(scenario)
 
