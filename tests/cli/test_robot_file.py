@@ -57,5 +57,5 @@ def test_simulator_options_are_refused_for_another_robot() -> None:
 
 
 def test_unknown_robot_lists_the_shipped_ones() -> None:
-    with pytest.raises(InputError, match="fake, sim"):
+    with pytest.raises(InputError, match="fake, ros-arduino, rover-pi, sim, yun"):
         described(robot="dalek")
