@@ -5,7 +5,7 @@
 arduino_core=/usr/share/arduino/hardware/arduino/avr
 
 want_avr_packages() {
-  has avr-gcc && [ -d "$arduino_core" ] || want_package gcc-avr avr-libc arduino-core-avr
+  { has avr-gcc && [ -d "$arduino_core" ]; } || want_package gcc-avr avr-libc arduino-core-avr
   has g++ || want_package g++
   [ -e /usr/include/simavr/sim_avr.h ] || want_package libsimavr-dev libelf-dev
 }

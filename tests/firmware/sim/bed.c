@@ -13,10 +13,12 @@
 #include <string.h>
 
 #include <simavr/avr_adc.h>
+#include <simavr/avr_extint.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
 #include <simavr/sim_elf.h>
+#include <simavr/sim_interrupts.h>
 #include <simavr/sim_regbit.h>
 #include <simavr/sim_time.h>
 
@@ -24,6 +26,9 @@
 #define BYTES 65536
 #define ENCODERS 2
 #define BOOT_CYCLES 80000 /* 5 ms */
+#define MEGA_PCIFR 0x3B
+#define MEGA_PCICR 0x68
+#define MEGA_PCMSK2 0x6D
 
 typedef struct { uint8_t byte[BYTES]; uint32_t head, tail; } queue_t;
 
@@ -58,6 +63,7 @@ typedef struct bed {
   watched_t watched[PORTS][8];
   uint8_t driven[PORTS], driven_high[PORTS]; /* pins that are driven from outside */
   encoder_t encoders[ENCODERS];
+  avr_int_vector_t port_k_change;
   uint64_t deaf_until; /* cycle; encoders are not heard before */
   uint16_t kept_word; /* what `bed_stall` wrote over */
   uint32_t stalled_at;
@@ -124,7 +130,20 @@ static void drive(bed_t *bed, char port, int bit, int level) {
   *high = (*high & ~(1 << bit)) | (level != 0) << bit;
   avr_ioport_external_t outer = {.name = port, .mask = *mask, .value = *high};
   avr_ioctl(bed->avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(port), &outer);
+  int has_changed = bed->pins[port - 'A'][bit].level != level;
   avr_raise_irq(pin_irq(bed, port, bit), level);
+  if (port == 'K' && has_changed && bed->port_k_change.vector && bed->avr->data[MEGA_PCMSK2] & 1 << bit)
+    avr_raise_interrupt(bed->avr, &bed->port_k_change);
+}
+
+/* simavr 1.6 has the pin change interrupt of the ATmega2560's port B, and not that of port K. */
+static void add_port_k_change(bed_t *bed) {
+  bed->port_k_change = (avr_int_vector_t){
+    .vector = 11, /* PCINT2 */
+    .enable = AVR_IO_REGBIT(MEGA_PCICR, 2),
+    .raised = AVR_IO_REGBIT(MEGA_PCIFR, 2),
+  };
+  avr_register_vector(bed->avr, &bed->port_k_change);
 }
 
 /* Encoders: edges at even distances until the wheel is where it is wanted. */
@@ -206,6 +225,9 @@ bed_t *bed_open(const char *elf, const char *mcu, uint32_t hz, char uart) {
   bed->uart = uart;
   join_uart(bed);
   watch_pins(bed);
+  if (!strcmp(mcu, "atmega2560")) add_port_k_change(bed);
+  /* Else simavr looks at each cycle whether a pin of INT0 or INT1 is still low, which halves its speed. */
+  for (int i = 0; i < 2; i++) avr_extint_set_strict_lvl_trig(bed->avr, i, 0);
   bed->deaf_until = BOOT_CYCLES;
   return bed;
 }
