@@ -44,6 +44,10 @@ class BedHost(Protocol):
     """The other end of its line, in lock step."""
 
     rover: BedRover
+    heard: list[Received]
+    """All that was heard; whoever looks at it clears it."""
+    offset_us: float
+    """Of the firmware's clock before simulated time."""
 
     @property
     def at_ms(self) -> int:
@@ -84,15 +88,16 @@ class BedHost(Protocol):
 
 
 @contextmanager
-def firmware_host(board: str, physics: bool = False) -> Iterator[BedHost]:
+def firmware_host(board: str, physics: bool = False, wraps_in_us: float | None = None) -> Iterator[BedHost]:
     """Compile the firmware for `board` ("uno", "mega"), start it in its robot and open a framed session.
 
-    With `physics` the wheels are those of the MuJoCo rover. Raises SetupError outside a checkout of the
+    With `physics` the wheels are those of the MuJoCo rover; `wraps_in_us` sets the board's clocks so that
+    they wrap so long after power-on. Raises SetupError outside a checkout of the
     source or without the simulator.
     """
     bed = _bed()
     try:
-        host: BedHost = bed.started_host(board, physics)
+        host: BedHost = bed.started_host(board, physics, wraps_in_us)
     except bed.BedMissing as reason:
         raise SetupError(f"{reason} ({_PACKAGES})") from None
     try:

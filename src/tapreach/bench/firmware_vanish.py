@@ -63,14 +63,15 @@ WAYS: dict[str, Vanish] = {
 }
 
 
-def stop_ms(host: BedHost, vanish: Vanish, chance: random.Random) -> float:
+def stop_ms(host: BedHost, vanish: Vanish, chance: random.Random, driven_us: float | None = None) -> float:
     """Drive, vanish at a random moment, and return how long the power lasted after the last command [ms].
 
-    Raises InputError when the wheels had no power before, or still have it in the end.
+    driven_us: how long to drive before. Raises InputError when the wheels had no power before, or still have
+    it in the end.
     """
     left, right = (chance.choice((-1, 1)) * chance.randrange(300, FASTEST) for _ in range(2))
     host.drive(0, 0)
-    host.drive_for(left, right, chance.uniform(150_000, 450_000))
+    host.drive_for(left, right, driven_us or chance.uniform(150_000, 450_000))
     sent_us = host.rover.now_us
     host.send(wire.Drive(left, right, host.at_ms))
     arrived_us = sent_us + len(encode(wire.Drive(left, right, host.at_ms), 1)) * CHARACTER_US

@@ -13,6 +13,7 @@ from tapreach.bench import accuracy as accuracy_bench
 from tapreach.bench import control as control_bench
 from tapreach.bench import fetch as fetch_bench
 from tapreach.bench import fetch_plan, locate_plan, tracking_plan
+from tapreach.bench import firmware as firmware_bench
 from tapreach.bench import locate as locate_bench
 from tapreach.bench import online_path as online_bench
 from tapreach.bench import tracking as tracking_bench
@@ -173,6 +174,26 @@ def online(
     used = _told(seed)
     plan = online_bench.OnlinePlan(used, 1 if smoke else taps, smoke)
     _run(lambda on_section: online_bench.run_online(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command()
+def firmware(
+    smoke: Smoke = False,
+    board: Annotated[str, typer.Option(help="uno or mega")] = "uno",
+    vanishings: Annotated[int, typer.Option(min=5, help="moments at which the host vanishes")] = 200,
+    moves: Annotated[int, typer.Option(min=2, help="random turns and advances")] = 100,
+    noise_bytes: Annotated[int, typer.Option(min=1000, help="random and damaged ones")] = 1_000_000,
+    hours: Annotated[float, typer.Option(min=0.0, help="of simulated time at work")] = 24.0,
+    wraps: Annotated[int, typer.Option(min=3, help="starts shortly before the clocks wrap")] = 30,
+    seed: FreshSeed = None,
+    json: Json = None,
+) -> None:
+    """The compiled firmware in a simulated microcontroller in a simulated robot. A day at work takes about five hours."""
+    used = _told(seed)
+    plan = firmware_bench.FirmwarePlan(used, board, 300, vanishings, moves, noise_bytes, hours, wraps)
+    if smoke:
+        plan = firmware_bench.smoke_plan(used, board)
+    _run(lambda on_section: firmware_bench.run_firmware(plan, on_section, MonotonicClock()), json)
 
 
 @bench.command()

@@ -108,6 +108,11 @@ class Avr:
         """A byte of the data space: registers and RAM."""
         return self._lib.bed_memory(self._bed, address)
 
+    def write(self, address: int, data: bytes) -> None:
+        """Change bytes of the data space."""
+        for index, value in enumerate(data):
+            self._lib.bed_write(self._bed, address + index, value)
+
     def connect_encoder(self, index: int, a: Pin, b: Pin) -> None:
         self._lib.bed_encoder(self._bed, index, *_named(a), *_named(b))
 
@@ -126,7 +131,7 @@ class Avr:
         self._lib.bed_reset(self._bed, cause)
 
     def stall(self) -> None:
-        """Let the processor hang with interrupts off, as a runaway program does."""
+        """Let the program hang; interrupts go on."""
         self._lib.bed_stall(self._bed)
 
     def unstall(self) -> None:

@@ -286,6 +286,9 @@ void bed_adc(bed_t *bed, int channel, uint32_t millivolts) {
 int bed_memory(bed_t *bed, uint32_t address) {
   return address <= bed->avr->ramend ? bed->avr->data[address] : -1;
 }
+void bed_write(bed_t *bed, uint32_t address, uint8_t value) {
+  if (address <= bed->avr->ramend) bed->avr->data[address] = value;
+}
 
 void bed_encoder(bed_t *bed, int index, char port_a, int bit_a, char port_b, int bit_b) {
   encoder_t *encoder = &bed->encoders[index];
@@ -323,12 +326,12 @@ void bed_reset(bed_t *bed, int cause) {
   for (int i = 0; i < ENCODERS; i++) bed->encoders[i].pending = 0; /* avr_reset forgot the timers */
 }
 
-/* The processor runs into an endless loop with interrupts off; `bed_unstall` gives it back its program. */
+/* The processor runs into an endless loop; `bed_unstall` gives it back its program. Interrupts go on: with them off,
+ * simavr 1.6 would wait for ever with the watchdog's own, where the real one resets after the next time-out. */
 void bed_stall(bed_t *bed) {
   avr_t *avr = bed->avr;
   bed->stalled_at = avr->pc;
   memcpy(&bed->kept_word, avr->flash + avr->pc, 2);
   avr->flash[avr->pc] = 0xFF, avr->flash[avr->pc + 1] = 0xCF; /* rjmp . */
-  avr->sreg[S_I] = 0;
 }
 void bed_unstall(bed_t *bed) { memcpy(bed->avr->flash + bed->stalled_at, &bed->kept_word, 2); }

@@ -30,6 +30,7 @@ SIGNATURES = {
     "bed_drive_pin": (None, (*_PIN, c_int)),
     "bed_adc": (None, (c_void_p, c_int, c_uint32)),
     "bed_memory": (c_int, (c_void_p, c_uint32)),
+    "bed_write": (None, (c_void_p, c_uint32, c_uint8)),
     "bed_encoder": (None, (c_void_p, c_int, c_char, c_int, c_char, c_int)),
     "bed_encoder_to": (None, (c_void_p, c_int, c_int64, c_double)),
     "bed_encoder_edges": (c_int64, (c_void_p, c_int)),
