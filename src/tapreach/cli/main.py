@@ -6,6 +6,7 @@ import typer
 from rich.console import Console
 
 from tapreach.cli.bench import bench
+from tapreach.cli.doctor import doctor
 from tapreach.cli.estimate import estimate
 from tapreach.cli.fetch import fetch
 from tapreach.cli.firmware import firmware
@@ -25,6 +26,7 @@ app.command()(run)
 app.command()(fetch)
 app.command("two-tap")(two_tap)
 app.command()(estimate)
+app.command()(doctor)
 app.add_typer(bench)
 app.add_typer(firmware)
 

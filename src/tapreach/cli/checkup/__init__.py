@@ -1,0 +1,1 @@
+"""What `tapreach doctor` looks at."""
