@@ -188,7 +188,7 @@ def firmware(
     seed: FreshSeed = None,
     json: Json = None,
 ) -> None:
-    """The compiled firmware in a simulated microcontroller in a simulated robot. A day at work takes about five hours."""
+    """The compiled firmware in a simulated microcontroller in a simulated robot. Takes about five hours."""
     used = _told(seed)
     plan = firmware_bench.FirmwarePlan(used, board, 300, vanishings, moves, noise_bytes, hours, wraps)
     if smoke:

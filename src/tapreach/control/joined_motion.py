@@ -53,7 +53,7 @@ class InTurn:
         """See Motion."""
         return self._motions[0].reason
 
-    def step(self, senses: Senses, now_ns: int) -> Twist:
+    def step(self, senses: Senses, now_ns: int) -> Twist | None:
         """See Motion."""
         twist = self._motions[0].step(senses, now_ns)
         while self._motions[0].progress is Progress.ARRIVED and len(self._motions) > 1:
@@ -83,7 +83,7 @@ class ArmFirst:
         """See Motion."""
         return self._wheels.reason or self._arm.reason
 
-    def step(self, senses: Senses, now_ns: int) -> Twist:
+    def step(self, senses: Senses, now_ns: int) -> Twist | None:
         """See Motion."""
         if self._arm.progress is Progress.MOVING:
             return self._arm.step(senses, now_ns)

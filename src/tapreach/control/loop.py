@@ -85,7 +85,7 @@ class ControlLoop:
         motion, _ = self._motion
         wanted = motion.step(self._senses, now_ns)
         owner = self._authority.circumstances_of(self._task_owner_id)
-        twist = self._send(self._gate.task(wanted, owner, duration))
+        twist = self._watch() if wanted is None else self._send(self._gate.task(wanted, owner, duration))
         self._finish_motion(motion)
         return twist
 
@@ -173,6 +173,13 @@ class ControlLoop:
         self._motion = None
         if not future.done():
             future.set_result(self._senses.odometry)
+
+    def _watch(self) -> Twist:
+        # The robot moves by itself, by its task's right, asked for before. The next ramp starts at rest.
+        self._gate.stop()
+        reading = self._senses.odometry
+        self.sent = Sent(reading.twist if reading is not None else STILL)
+        return self.sent.twist
 
     def _send(self, decision: Decision) -> Twist:
         try:

@@ -39,6 +39,9 @@ class Motion(Protocol):
         """Why it was given up; '' otherwise."""
         ...
 
-    def step(self, senses: Senses, now_ns: int) -> Twist:
-        """Return the twist for the next period; zero once it has ended."""
+    def step(self, senses: Senses, now_ns: int) -> Twist | None:
+        """Return the twist for the next period; zero once it has ended.
+
+        None while the robot moves by itself: then no twist may be sent, for it would end that move.
+        """
         ...

@@ -50,9 +50,10 @@ class OwnMove(Protocol):
 class MovesByItself(Protocol):
     """What a robot's base also offers where its board can move by itself."""
 
-    def drive_by(self, step: PlanarStep) -> OwnMove:
+    def drive_by(self, step: PlanarStep, share: float = 1.0) -> OwnMove:
         """Begin a turn and an advance after it; what was done comes as odometry.
 
-        Raises LinkLost, or DriverError where the wheels cannot begin (a fault, another move).
+        share: of the speed that it usually takes for that. Raises LinkLost, or DriverError where the wheels
+        cannot begin: a fault, another move, still turning.
         """
         ...

@@ -58,16 +58,16 @@ class BoardBase:
         self._send(allowed)
         return allowed if twist.is_zero or (self._obeys and not ended) else STILL
 
-    def drive_by(self, step: PlanarStep) -> RelativeMove:
+    def drive_by(self, step: PlanarStep, share: float = 1.0) -> RelativeMove:
         """See MovesByItself."""
         self._require_link()
         if self._move is not None and self._move.status is MoveStatus.MOVING:
             raise DriverError("another move is not finished: cancel it first")
-        if not self._obeys:
+        if self._telemetry is None or self._telemetry.state is not State.READY:
             state = self._telemetry.state.name.lower() if self._telemetry else "unknown"
             raise DriverError(f"the wheels are not ready ({state}): send a zero first")
         self._stands, self.wished_ns = False, self._clock.now_ns()
-        legs = legs_of(step, self._wheels)
+        legs = legs_of(step, self._wheels, share)
         self._move = RelativeMove(legs, self._session, self._clock, next_id(self._move_id))
         self._move_id = (self._move_id + len(legs)) % 255
         if self._telemetry is not None:

@@ -36,10 +36,13 @@ class Leg:
         return max(abs(self.left), abs(self.right))
 
 
-def legs_of(step: PlanarStep, wheels: Wheels) -> tuple[Leg, ...]:
-    """Return the turn and the advance of a step; what is shorter than half a tick is left out."""
-    turn = Leg(*wheels.turn_ticks(step), *wheels.turn_rates())
-    advance = Leg(*wheels.advance_ticks(step), *wheels.advance_rates())
+def legs_of(step: PlanarStep, wheels: Wheels, share: float = 1.0) -> tuple[Leg, ...]:
+    """Return the turn and the advance of a step, at a share of gentle speeds.
+
+    What is shorter than half a tick is left out.
+    """
+    turn = Leg(*wheels.turn_ticks(step), *wheels.turn_rates(share))
+    advance = Leg(*wheels.advance_ticks(step), *wheels.advance_rates(share))
     return tuple(leg for leg in (turn, advance) if leg.length)
 
 

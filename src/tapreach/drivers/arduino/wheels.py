@@ -46,14 +46,14 @@ class Wheels:
         way = round(step.advance * self.ticks_per_m)
         return way, way
 
-    def turn_rates(self) -> tuple[int, int]:
+    def turn_rates(self, share: float = 1.0) -> tuple[int, int]:
         """Return speed [ticks/s] and acceleration [ticks/s²] of a wheel in a gentle turn on the spot."""
         arm = self._base.track_width / 2.0
-        return self._rates(self._base.max_angular * arm, self._base.max_angular_acceleration * arm)
+        return self._rates(share * self._base.max_angular * arm, self._base.max_angular_acceleration * arm)
 
-    def advance_rates(self) -> tuple[int, int]:
+    def advance_rates(self, share: float = 1.0) -> tuple[int, int]:
         """Return speed [ticks/s] and acceleration [ticks/s²] of a wheel in a gentle advance."""
-        return self._rates(self._base.max_linear, self._base.max_linear_acceleration)
+        return self._rates(share * self._base.max_linear, self._base.max_linear_acceleration)
 
     @property
     def fastest(self) -> int:
