@@ -10,6 +10,7 @@ cd "$(dirname "$0")/.."
 . tools/lib/node_env.sh
 . tools/lib/avr.sh
 . tools/lib/camera.sh
+. tools/lib/systemd.sh
 
 prepare() {
   want_python_packages
@@ -19,6 +20,7 @@ prepare() {
   want_graphics_packages
   want_avr_packages
   want_camera_packages
+  want_systemd_package
   install_packages || [ -z "$required" ] || explain_missing_packages
   ensure_venv
   ensure_package "[dev]"

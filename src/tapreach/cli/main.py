@@ -10,6 +10,7 @@ from tapreach.cli.doctor import doctor
 from tapreach.cli.estimate import estimate
 from tapreach.cli.fetch import fetch
 from tapreach.cli.firmware import firmware
+from tapreach.cli.install import install
 from tapreach.cli.run import run
 from tapreach.cli.two_tap import two_tap
 from tapreach.errors import TapreachError
@@ -27,6 +28,7 @@ app.command()(fetch)
 app.command("two-tap")(two_tap)
 app.command()(estimate)
 app.command()(doctor)
+app.command()(install)
 app.add_typer(bench)
 app.add_typer(firmware)
 

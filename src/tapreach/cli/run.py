@@ -1,6 +1,7 @@
 """`tapreach run`: start a robot, simulated unless told otherwise, and serve its page until Ctrl-C."""
 
 import logging
+import re
 import secrets
 from collections.abc import Callable
 from pathlib import Path
@@ -12,11 +13,15 @@ from rich.console import Console
 from tapreach.cli.address import address_in_network, page_address, qr_code
 from tapreach.cli.robot_file import describe_robot
 from tapreach.drivers.registry import make_robot
+from tapreach.errors import InputError
 from tapreach.robot.clock import MonotonicClock
 from tapreach.robot.config import RobotDescription
 from tapreach.server.access import AccessPolicy
 from tapreach.server.serve import listening_socket, run_event_loop, serve
 from tapreach.server.station import Station
+
+SHORTEST_TOKEN = 12
+TOKEN = re.compile(rf"[A-Za-z0-9_-]{{{SHORTEST_TOKEN},}}")
 
 
 def run(
@@ -31,32 +36,53 @@ def run(
     lan: Annotated[
         bool, typer.Option("--lan", help="let a tablet in: serve the network, with a token")
     ] = False,
+    token_file: Annotated[
+        Path | None, typer.Option(help="with --lan: the token stands here; the address stays the same")
+    ] = None,
     captures: Annotated[Path, typer.Option(help="where stored pictures go")] = Path("captures"),
 ) -> None:
     """Start the robot and the operator page; Ctrl-C ends both."""
     console = Console(highlight=False)
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
+    if token_file is not None and not lan:
+        raise InputError("--token-file belongs to --lan: on this machine alone no token is asked for")
     description = describe_robot(robot, size, scene, seed, fault or [])
+    token = _token(token_file) if lan else None
     listener = listening_socket("0.0.0.0" if lan else "127.0.0.1", port)
-    token = secrets.token_urlsafe(12) if lan else None
     clock = MonotonicClock()
     station = Station(make_robot(description, clock), clock, captures)
     host = address_in_network() if lan else "localhost"
     address = page_address(host, listener.getsockname()[1], token)
     policy = AccessPolicy(token, host_names=[host])
     console.print(f"Starting the robot {description.name!r} ...")
-    run_event_loop(serve(station, listener, policy, _announcer(console, description, address, lan)))
+    run_event_loop(
+        serve(station, listener, policy, _announcer(console, description, address, lan, token_file))
+    )
     console.print("Stopped; the robot stands still.")
 
 
+def _token(path: Path | None) -> str:
+    """Return a fresh pairing token, or the one in the file. Raises InputError where it holds none."""
+    if path is None:
+        return secrets.token_urlsafe(12)
+    try:
+        token = path.read_text(encoding="ascii").strip()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"--token-file {path} cannot be read: {error}") from None
+    if not TOKEN.fullmatch(token):
+        raise InputError(f"--token-file {path} must hold {SHORTEST_TOKEN} or more letters and digits alone")
+    return token
+
+
 def _announcer(
-    console: Console, description: RobotDescription, address: str, lan: bool
+    console: Console, description: RobotDescription, address: str, lan: bool, token_file: Path | None
 ) -> Callable[[], None]:
     def announce() -> None:
         console.print(f"\n  Open  [bold]{address}[/bold]\n", soft_wrap=True)
         if lan:
             console.print(qr_code(address), markup=False)
-            console.print("Whoever has this address can drive. It changes with every start.")
+            changes = "It changes with every start." if token_file is None else "It stays the same."
+            console.print(f"Whoever has this address can drive. {changes}")
         else:
             console.print("For a tablet on the same network, start with --lan: it prints a QR code.")
         console.print("Ctrl-C ends it.")

@@ -1,0 +1,1 @@
+"""What `tapreach install` writes: a service, its pairing token, and a hotspot."""
