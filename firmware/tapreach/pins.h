@@ -20,6 +20,17 @@ constexpr uint8_t A_BIT[2] = {0, 2}, B_BIT[2] = {1, 3};
 #define ENCODER_ENABLE PCIE2
 #define ENCODER_VECTOR PCINT2_vect
 
+#elif defined(ARDUINO_AVR_PROMICRO)  // an ATmega32U4 whose pins 11 to 13, A4 and A5 lead nowhere
+constexpr uint8_t BOARD = protocol::board::LEONARDO;
+constexpr uint8_t PWM[2] = {5, 3}, FORWARD[2] = {A1, A3}, REVERSE[2] = {A2, 14};
+constexpr uint8_t SERVO[4] = {2, 4, 6, 7}, STANDBY = 1, STOP = 15, LED = 17, BATTERY = A0;
+constexpr uint8_t ENCODER_A[2] = {8, 10}, ENCODER_B[2] = {9, 16};
+constexpr uint8_t A_BIT[2] = {4, 6}, B_BIT[2] = {5, 2};
+#define ENCODER_PORT PINB
+#define ENCODER_MASK PCMSK0
+#define ENCODER_ENABLE PCIE0
+#define ENCODER_VECTOR PCINT0_vect
+
 #elif defined(__AVR_ATmega32U4__)
 #if defined(ARDUINO_AVR_YUN)
 constexpr uint8_t BOARD = protocol::board::YUN;

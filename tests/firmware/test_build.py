@@ -71,5 +71,5 @@ def test_command_offers_every_board():
 
 
 def test_unknown_board_is_told_the_known_ones():
-    with pytest.raises(InputError, match="leonardo, mega, uno, yun"):
+    with pytest.raises(InputError, match="leonardo, mega, promicro, uno, yun"):
         board_named("due")

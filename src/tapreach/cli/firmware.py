@@ -29,6 +29,7 @@ class BoardName(StrEnum):
     UNO = "uno"
     MEGA = "mega"
     LEONARDO = "leonardo"
+    PRO_MICRO = "promicro"
     YUN = "yun"
 
 

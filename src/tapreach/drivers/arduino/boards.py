@@ -21,23 +21,20 @@ class Board:
     usb_ids: tuple[int, int] | None = None
 
 
+def _usb_board(name: str, title: str, define: str) -> Board:
+    """Return an ATmega32U4 that its USB connects to the host."""
+    return Board(
+        name, title, "atmega32u4", "leonardo", define, 28672, 2560, "avr109", 57600, (0x2341, 0x8036)
+    )
+
+
 BOARDS = {
     board.name: board
     for board in (
         Board("uno", "Uno, Nano", "atmega328p", "standard", "AVR_UNO", 32256, 2048, "arduino", 115200),
         Board("mega", "Mega 2560", "atmega2560", "mega", "AVR_MEGA2560", 253952, 8192, "wiring", 115200),
-        Board(
-            "leonardo",
-            "Leonardo, Pro Micro",
-            "atmega32u4",
-            "leonardo",
-            "AVR_LEONARDO",
-            28672,
-            2560,
-            "avr109",
-            57600,
-            (0x2341, 0x8036),
-        ),
+        _usb_board("leonardo", "Leonardo", "AVR_LEONARDO"),
+        _usb_board("promicro", "Pro Micro", "AVR_PROMICRO"),
         Board("yun", "Yún", "atmega32u4", "yun", "AVR_YUN", 28672, 2560, "avr109", 57600, (0x2341, 0x8041)),
     )
 }
