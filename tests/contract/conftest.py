@@ -9,11 +9,14 @@ from typing import Any
 
 import pytest
 from tests.drivers.arduino.memory import clocked_robot
+from tests.firmware.sim.needs import needs_bed
+from tests.firmware.sim.whole_robot import WholeRobot, described
 
 from tapreach.drivers.fake import FakeRobot
 from tapreach.drivers.sim.inline import InlineSimRobot
 from tapreach.drivers.sim.options import resolve_scene
 from tapreach.drivers.sim.robot import SimRobot
+from tapreach.drivers.sim.scene import load_scene
 from tapreach.errors import SetupError
 from tapreach.robot.clock import MS, SECOND, Clock, ManualClock, MonotonicClock
 from tapreach.robot.config import RobotDescription, load_robot
@@ -78,11 +81,13 @@ def fake_rig() -> Rig:
     return Rig(FakeRobot(description, clock, draws_in_thread=False), clock)
 
 
+SMALL = {"width": 160, "height": 120, "fx": 533.0 / 4, "rate_hz": 10.0}
+
+
 def sim_description() -> RobotDescription:
     """The simulated rover with a small picture and a bare room, so that starting and drawing cost little."""
     description = load_robot(ROOT / "robots" / "sim.toml")
-    small = {"width": 160, "height": 120, "fx": description.camera.fx / 4, "rate_hz": 10.0}
-    camera = description.camera.model_copy(update=small)
+    camera = description.camera.model_copy(update=SMALL)
     return description.model_copy(update={"camera": camera, "simulation": {"scene": "plain_floor"}})
 
 
@@ -103,11 +108,23 @@ def arduino_rig() -> Rig:
     return Rig(robot, robot.clock)
 
 
-RIGS = {"fake": fake_rig, "sim inline": sim_inline_rig, "sim process": sim_rig, "arduino": arduino_rig}
+def firmware_rig() -> Rig:
+    clock, scene = ManualClock(), load_scene("plain_floor")
+    return Rig(WholeRobot(described(**SMALL), scene, clock), clock)
+
+
+RIGS = {
+    "fake": fake_rig,
+    "sim inline": sim_inline_rig,
+    "sim process": sim_rig,
+    "arduino": arduino_rig,
+    "firmware": firmware_rig,
+}
+NEEDS = {"firmware": needs_bed}
 Scenario = Callable[[Rig], Awaitable[None]]
 
 
-@pytest.fixture(params=RIGS)
+@pytest.fixture(params=[pytest.param(name, marks=NEEDS.get(name, ())) for name in RIGS])
 def make_rig(request: pytest.FixtureRequest) -> Callable[[], Rig]:
     """Return what makes a rig of each driver in turn."""
     return RIGS[request.param]

@@ -29,8 +29,8 @@ OPENING_S = 0.0005
 """Real time for the threads that open and close a port."""
 
 
-def described(rate_hz: float) -> RobotDescription:
-    """The simulator's rover on a board and servos; with a slower camera, for drawing takes the time."""
+def described(**camera: float) -> RobotDescription:
+    """The simulator's rover on a board and servos; `camera` says what differs of it."""
     rover = load_robot(resource_path("robots") / "sim.toml")
     with_board = load_robot(resource_path("robots") / "rover-pi.toml")
     servos = with_board.arm.servos
@@ -39,8 +39,8 @@ def described(rate_hz: float) -> RobotDescription:
         "elbow": servos.elbow.model_copy(update={"pulse_at_zero_us": 1500.0, "high_us": 2100}),
     }
     arm = rover.arm.model_copy(update={"servos": servos.model_copy(update=reach)})
-    camera = rover.camera.model_copy(update={"rate_hz": rate_hz})
-    parts = {"driver": "arduino", "link": with_board.link, "arm": arm, "camera": camera}
+    seen = rover.camera.model_copy(update=camera)
+    parts = {"driver": "arduino", "link": with_board.link, "arm": arm, "camera": seen}
     return rover.model_copy(update=parts)
 
 
@@ -71,15 +71,13 @@ class WholeRobot(ArduinoRobot):
 
     def __init__(
         self,
+        description: RobotDescription,
         scene: Scene,
         clock: ManualClock,
         board: str = "uno",
-        rate_hz: float = 10.0,
-        has_pictures: bool = True,
     ) -> None:
-        description = described(rate_hz)
         super().__init__(description, clock, lambda told, clock: Eye(told.camera, clock), self._open)
-        self.scene, self.clock, self._has_pictures = scene, clock, has_pictures
+        self.scene, self.clock = scene, clock
         self.plant = MujocoPlant(scene, description)
         self.rover = started_rover(board, self.plant)
         self.port: Port | None = None
@@ -96,10 +94,9 @@ class WholeRobot(ArduinoRobot):
 
     async def connect(self) -> None:
         """Turn the clock until it is connected. Raises SetupError when nothing can draw."""
-        if self._has_pictures:
-            size = self.description.camera
-            self._renderer = Renderer(self.plant.world.model, size.width, size.height)
-            self._eyes = SimCamera(self._renderer, self.scene.faults, 0, size.delay_ms)
+        size = self.description.camera
+        self._renderer = Renderer(self.plant.world.model, size.width, size.height)
+        self._eyes = SimCamera(self._renderer, self.scene.faults, 0, size.delay_ms)
         self._steps = asyncio.create_task(self._step_along())
         await self._while_time_passes(super().connect())
 
@@ -110,7 +107,7 @@ class WholeRobot(ArduinoRobot):
             self._steps.cancel()
             await asyncio.gather(self._steps, return_exceptions=True)
             self._steps = None
-            self.rover.close()
+        self.rover.close()
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
