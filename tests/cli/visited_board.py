@@ -20,8 +20,8 @@ async def turn(clock, step):
         await asyncio.sleep(0)
 
 
-def play_visit(scenario, make_board=PeerBoard, open_port=None):
-    """Run `scenario(visit, board, clock)` with an entered visit; return what it returns."""
+def play_clocked(work, make_board=PeerBoard, open_port=None):
+    """Run `work(clock, board, open_port)` while the clock turns and the board lives."""
 
     async def run():
         clock = ManualClock()
@@ -30,17 +30,23 @@ def play_visit(scenario, make_board=PeerBoard, open_port=None):
         def opened(section, hear, end):
             return MemoryPort(board, hear, end)
 
-        async def visited():
-            async with BoardVisit(LinkSection(address="/dev/peer"), clock, (), open_port or opened) as visit:
-                return await scenario(visit, board, clock)
-
         turning = asyncio.create_task(turn(clock, board.step))
-        visiting = asyncio.create_task(visited())
-        await asyncio.wait({turning, visiting}, return_when=asyncio.FIRST_COMPLETED)
+        working = asyncio.create_task(work(clock, board, open_port or opened))
+        await asyncio.wait({turning, working}, return_when=asyncio.FIRST_COMPLETED)
         if turning.done():
-            visiting.cancel()
+            working.cancel()
             turning.result()
         turning.cancel()
-        return await visiting
+        return await working
 
     return asyncio.run(run())
+
+
+def play_visit(scenario, make_board=PeerBoard, open_port=None):
+    """Run `scenario(visit, board, clock)` with an entered visit; return what it returns."""
+
+    async def work(clock, board, opened):
+        async with BoardVisit(LinkSection(address="/dev/peer"), clock, (), opened) as visit:
+            return await scenario(visit, board, clock)
+
+    return play_clocked(work, make_board, open_port)

@@ -12,6 +12,8 @@ from rich.console import Console
 from tapreach.cli.checkup.check import Check, Verdict, worst
 from tapreach.cli.checkup.examine import examine
 from tapreach.cli.robot_file import find_robot_file
+from tapreach.cli.teaching.person import TeachingStopped, Terminal
+from tapreach.cli.teaching.teach import Lesson, teach
 from tapreach.robot.clock import MonotonicClock
 from tapreach.robot.config import load_robot
 
@@ -28,11 +30,20 @@ def doctor(
     robot: Annotated[str, typer.Option(help="a shipped robot or the path of a robot file")],
     as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
     captures: Annotated[Path, typer.Option(help="where stored pictures go")] = Path("captures"),
+    lesson: Annotated[
+        Lesson | None, typer.Option("--teach", help="instead: small moves, step by step, as you say")
+    ] = None,
 ) -> None:
     """Check camera, link, firmware, battery, servos, Wi-Fi and disk; nothing of the robot moves.
 
+    With --teach it asks and moves, wheels off the ground: servo limits and directions, which way motors turn
+    and encoders count, ticks of a turn. What came of it goes into the robot file, comments untouched.
+
     Exit code 0 when nothing fails (warnings allowed), 1 when something does, 2 for what cannot be used.
     """
+    if lesson is not None:
+        _teach(lesson, find_robot_file(robot))
+        return
     description = load_robot(find_robot_file(robot))
     checks = asyncio.run(examine(description, MonotonicClock(), captures))
     if as_json:
@@ -40,6 +51,15 @@ def doctor(
     else:
         _show(description.name, checks)
     raise typer.Exit(NOT_WELL if worst(checks) is Verdict.FAIL else 0)
+
+
+def _teach(lesson: Lesson, path: Path) -> None:
+    try:
+        is_right = asyncio.run(teach(lesson, path, Terminal(), MonotonicClock()))
+    except TeachingStopped as stopped:
+        typer.echo(stopped, err=True)
+        raise typer.Exit(NOT_WELL) from None
+    raise typer.Exit(0 if is_right else NOT_WELL)
 
 
 def as_document(name: str, checks: list[Check]) -> str:

@@ -18,7 +18,7 @@ TICK_NS = 20 * MS
 OPENING_NS = 8 * SECOND
 """Twice what a boot loader may take after a port was opened."""
 TRIES = 2
-ANSWER_NS = 1 * SECOND
+SENDS, ANSWER_NS = 3, 300 * MS
 
 
 class BoardVisit:
@@ -97,15 +97,19 @@ class BoardVisit:
         await self._clock.sleep_until(self._clock.now_ns() + duration_ns)
 
     async def ask(self, message: ToFirmware) -> Result:
-        """Send a command and return the board's answer. Raises LinkLost where none comes."""
-        if not self.is_open:
-            raise LinkLost(self.reason)
+        """Send a command, again where its answer is lost, and return the answer. Raises LinkLost."""
         self._answers.clear()
-        self.session.send(message)
-        heard = await self.until(lambda: any(each == message for each, _ in self._answers), ANSWER_NS)
-        if not heard:
-            raise LinkLost(self.reason or "the board did not answer")
-        return next(result for each, result in self._answers if each == message)
+        for _ in range(SENDS):
+            if not self.is_open:
+                break
+            self.session.send(message)
+            await self.until(lambda: self._answer_to(message) is not None, ANSWER_NS)
+            if (answer := self._answer_to(message)) is not None:
+                return answer
+        raise LinkLost(self.reason or "the board does not answer: check its cable")
+
+    def _answer_to(self, message: ToFirmware) -> Result | None:
+        return next((result for each, result in self._answers if each == message), None)
 
     def on_phase(self, phase: Phase, reason: str) -> None:
         """See SessionEars. Greeting again is no news: why the link was lost before says more."""

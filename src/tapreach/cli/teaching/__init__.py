@@ -1,0 +1,1 @@
+"""Guided teach-in of a real robot's servos, motors and encoders."""

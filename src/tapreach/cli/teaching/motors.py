@@ -1,0 +1,111 @@
+"""Do motors turn the way they are told, and do encoders count that way? Slowly, wheels off the ground.
+
+The wheels are driven without feedback: an encoder the wrong way round would make a speed control run away.
+"""
+
+from tapreach.cli.teaching.person import Person
+from tapreach.drivers.arduino.fault_words import refusal_words
+from tapreach.drivers.arduino.visit import BoardVisit
+from tapreach.drivers.arduino.wire import Drive, Gains, Result, Stop
+from tapreach.errors import DriverError, LinkLost
+from tapreach.robot.clock import MS, SECOND
+from tapreach.robot.link_section import LinkSection
+
+SIDES = ("left", "right")
+OTHER = {"left": "right", "right": "left"}
+SPEED, ACCELERATION, PWM = 300, 600, 110
+"""[ticks/s], [ticks/s²] and the PWM of 255 that this speed stands for while there is no feedback."""
+SPIN_NS, EVERY_NS, REST_NS = 1 * SECOND, 50 * MS, 500 * MS
+FEW_TICKS = 10
+FIRMWARE_GAINS = Gains(20, 200, 0, 20, 4000, 8000)
+"""Those the firmware starts with (wheel.h): given back where the robot file has none."""
+WITHOUT_FEEDBACK = Gains(0, 0, 0, round(256 * PWM / SPEED), SPEED, ACCELERATION)
+
+
+async def try_motors(visit: BoardVisit, person: Person, link: LinkSection) -> list[str]:
+    """Turn each wheel for a second and return what has to be wired otherwise; empty where all is right.
+
+    Raises TeachingStopped, LinkLost, DriverError.
+    """
+    person.tell("One wheel after the other turns forward for a second, slowly.")
+    await person.ask("Are both wheels off the ground, and free?", ("yes",))
+    await _ask(visit, WITHOUT_FEEDBACK)
+    try:
+        faults: list[str] = []
+        for side in SIDES:
+            faults += await _test_side(visit, person, side)
+        return faults
+    finally:
+        await _give_gains_back(visit, person, link)
+
+
+async def _test_side(visit: BoardVisit, person: Person, side: str) -> list[str]:
+    await person.ask(f"\nThe {side} wheel now?", ("yes",))
+    ticks = await _spin(visit, side)
+    seen = await person.ask("Which wheel turned?", ("left", "right", "none"))
+    if seen == "none":
+        return [f"{side} motor: no motion; check its supply, its enable pin and its cable"]
+    faults = []
+    if seen != side:
+        faults.append(f"the {seen} wheel turns when the {side} one should: swap the two motors at the bridge")
+    way = await person.ask("Did it turn forward or back?", ("forward", "back"))
+    if way == "back":
+        faults.append(f"{seen} motor turns back: swap its two wires at the bridge")
+    return faults + _encoder_faults(seen, 1 if way == "forward" else -1, ticks)
+
+
+def _encoder_faults(seen: str, sign: int, ticks: dict[str, int]) -> list[str]:
+    counted = sign * ticks[seen]
+    if abs(counted) < FEW_TICKS:
+        if abs(ticks[OTHER[seen]]) >= FEW_TICKS:
+            return [f"the {OTHER[seen]} encoder counts the {seen} wheel: swap the two encoders at the board"]
+        return [f"{seen} encoder counts nothing: check its supply and its cable"]
+    return [] if counted > 0 else [f"{seen} encoder counts back: swap its A and B"]
+
+
+async def _spin(visit: BoardVisit, side: str) -> dict[str, int]:
+    """Turn one wheel and return the ticks of both."""
+    await _ask(visit, Drive(0, 0, visit.session.at_ms))
+    before = _ticks(visit)
+    left, right = (SPEED if side == each else 0 for each in SIDES)
+    for _ in range(SPIN_NS // EVERY_NS):
+        visit.session.send(Drive(left, right, visit.session.at_ms))
+        await visit.pause(EVERY_NS)
+    await _ask(visit, Stop())
+    await visit.pause(REST_NS)
+    after = _ticks(visit)
+    return {each: _difference(after[each], before[each]) for each in SIDES}
+
+
+def _ticks(visit: BoardVisit) -> dict[str, int]:
+    told = visit.telemetry
+    if told is None:
+        raise LinkLost(visit.reason)
+    if told.faults:
+        raise DriverError("a fault stands: tapreach doctor says which")
+    return {"left": told.left, "right": told.right}
+
+
+def _difference(after: int, before: int) -> int:
+    """Return ticks that have come since; the count wraps at 32 bits."""
+    return (after - before + 2**31) % 2**32 - 2**31
+
+
+async def _give_gains_back(visit: BoardVisit, person: Person, link: LinkSection) -> None:
+    control = link.wheel_control
+    gains = FIRMWARE_GAINS
+    if control is not None:
+        parts = (control.kp, control.ki, control.kd, control.feedforward)
+        kp, ki, kd, feedforward = (round(256 * part) for part in parts)
+        gains = Gains(kp, ki, kd, feedforward, FIRMWARE_GAINS.max_speed, FIRMWARE_GAINS.max_acceleration)
+    try:
+        visit.session.send(Stop())
+        await _ask(visit, gains)
+    except DriverError:
+        person.tell("The board did not take its wheel control back: switch it off and on before you drive.")
+
+
+async def _ask(visit: BoardVisit, message: Drive | Gains | Stop) -> None:
+    result = await visit.ask(message)
+    if result is not Result.OK:
+        raise DriverError(f"the board refuses {type(message).__name__}: {refusal_words(result)}")

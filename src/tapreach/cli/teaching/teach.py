@@ -1,0 +1,77 @@
+"""Teach-in from the first question to the written robot file."""
+
+from enum import StrEnum
+from pathlib import Path
+
+from tapreach.cli.teaching.encoders import count_encoders
+from tapreach.cli.teaching.file_changes import Changes, changed_text, difference, require_own_file, write_text
+from tapreach.cli.teaching.motors import try_motors
+from tapreach.cli.teaching.person import Person
+from tapreach.cli.teaching.servos import teach_servos
+from tapreach.drivers.arduino.ports import OpenPort, open_port
+from tapreach.drivers.arduino.visit import BoardVisit
+from tapreach.errors import InputError, LinkLost
+from tapreach.robot.clock import Clock
+from tapreach.robot.config import RobotDescription, load_robot
+from tapreach.robot.link_section import LinkSection
+
+
+class Lesson(StrEnum):
+    """What can be taught."""
+
+    SERVOS = "servos"
+    MOTORS = "motors"
+    ENCODERS = "encoders"
+
+
+async def teach(
+    lesson: Lesson, path: Path, person: Person, clock: Clock, open_port: OpenPort = open_port
+) -> bool:
+    """Hold a lesson and write what came of it into the robot file.
+
+    Returns True where all is right, False where something has to be wired otherwise. Raises InputError,
+    ConfigError, DriverError, LinkLost and TeachingStopped; then the file is as it was.
+    """
+    require_own_file(path)
+    description = load_robot(path)
+    link = _own_link(description)
+    async with BoardVisit(link, clock, (), open_port) as visit:
+        if not await visit.opened():
+            raise LinkLost(visit.reason)
+        if lesson is Lesson.MOTORS:
+            return _told(person, await try_motors(visit, person, link))
+        if lesson is Lesson.SERVOS:
+            changes = await teach_servos(visit, person, description.arm)
+        else:
+            changes = await count_encoders(visit, person)
+        await _write(person, path, changes)
+    return True
+
+
+def _own_link(description: RobotDescription) -> LinkSection:
+    if description.link is None or description.link.protocol != "tapreach":
+        raise InputError(f"{description.name!r} has no board with Tapreach's firmware: nothing to teach")
+    return description.link
+
+
+def _told(person: Person, faults: list[str]) -> bool:
+    if not faults:
+        person.tell("\nMotors and encoders are right.")
+        return True
+    person.tell("\nSwitch it off, then:")
+    for fault in faults:
+        person.tell(f"  - {fault}")
+    person.tell("and test again.")
+    return False
+
+
+async def _write(person: Person, path: Path, changes: Changes) -> None:
+    before = path.read_text(encoding="utf-8")
+    after = changed_text(before, changes, str(path))
+    if after == before:
+        person.tell("\nThe robot file says so already.")
+        return
+    person.tell("\n" + difference(before, after, path.name))
+    if await person.ask("Write this?", ("yes", "no")) == "yes":
+        write_text(path, after)
+        person.tell(f"Written to {path}.")
