@@ -261,6 +261,26 @@ def test_drive_in_a_move_ends_it():
     play(scenario)
 
 
+def test_move_that_comes_too_late_is_asked_for_again_and_not_for_ever():
+    async def scenario(robot):
+        robot.board.refused[Move] = Result.TOO_OLD
+        move = robot.base.drive_by(PlanarStep(0.0, 0.2))
+        for _ in range(5):
+            await robot.pass_time(20 * MS)
+            move.keep()
+        assert move.status is MoveStatus.MOVING
+        del robot.board.refused[Move]
+        await follow(robot, move)
+        assert move.status is MoveStatus.ARRIVED
+        robot.board.refused[Move] = Result.TOO_OLD
+        move = robot.base.drive_by(PlanarStep(0.0, 0.2))
+        await follow(robot, move)
+        assert move.status is MoveStatus.FAILED
+        assert "too late" in move.reason
+
+    play(scenario)
+
+
 def test_second_move_and_move_with_a_fault_are_refused_with_the_reason():
     async def scenario(robot):
         move = robot.base.drive_by(PlanarStep(0.0, 1.0))

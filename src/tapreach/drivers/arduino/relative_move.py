@@ -11,6 +11,8 @@ from tapreach.robot.clock import MS, Clock
 from tapreach.robot.own_moves import MoveStatus
 
 TAKEN_WITHIN_NS = 400 * MS
+ASKED_FOR_NS = 1000 * MS
+"""So long a leg that comes too late is asked for again: what the board refused has moved nothing."""
 NEAR_TICKS = 4
 """From its goal, within which a leg whose report was lost has arrived by its ticks."""
 ENDINGS = {
@@ -54,7 +56,7 @@ class RelativeMove:
         self._id = first_id
         self._at = 0
         self._is_sent = self._is_taken = False
-        self._sent_ns = 0
+        self._sent_ns = self._asked_ns = 0
         self._left_permille = 1000
         self._ticks: tuple[int, int] | None = None
         self._begun_at: tuple[int, int] | None = None
@@ -75,6 +77,7 @@ class RelativeMove:
         if self.status is not MoveStatus.MOVING:
             return
         if not self._is_sent:
+            self._asked_ns = self._asked_ns or self._clock.now_ns()
             self._send_leg()
         elif not self._is_taken and self._clock.now_ns() - self._sent_ns > TAKEN_WITHIN_NS:
             self._end(MoveStatus.FAILED, "the board did not take the move")
@@ -99,7 +102,9 @@ class RelativeMove:
         if move.id != self._id or self.status is not MoveStatus.MOVING:
             return
         self._is_taken = result is Result.OK
-        if not self._is_taken:
+        if result is Result.TOO_OLD and self._clock.now_ns() - self._asked_ns < ASKED_FOR_NS:
+            self._is_sent = False
+        elif not self._is_taken:
             self._end(MoveStatus.FAILED, f"the board refuses the move: {refusal_words(result)}")
 
     def on_moved(self, moved: Moved) -> None:
@@ -137,7 +142,7 @@ class RelativeMove:
             return
         self._at += 1
         self._id = next_id(self._id)
-        self._is_sent, self._left_permille = False, 1000
+        self._is_sent, self._asked_ns, self._left_permille = False, 0, 1000
 
     def _is_near(self, telemetry: Telemetry) -> bool:
         if self._begun_at is None:
