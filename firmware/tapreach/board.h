@@ -1,9 +1,13 @@
 // The registers of a real board behind `Hardware`.
 #pragma once
 
-#include "encoders.h"
 #include "hardware.h"
+#if defined(TAPREACH_STEPPER)
+#include "steppers.h"
+#else
+#include "encoders.h"
 #include "motors.h"
+#endif
 #include "pins.h"
 #include "pulses.h"
 #include "reset.h"
@@ -56,7 +60,9 @@ static int8_t digital(uint8_t pin) { return pin < NUM_DIGITAL_PINS ? int8_t(leve
 
 static uint16_t features() {
   uint16_t has = protocol::feature::SERVOS | protocol::feature::BATTERY | protocol::feature::STOP_INPUT;
-#if !defined(ENCODER_SINGLE)
+#if defined(TAPREACH_STEPPER)
+  has |= protocol::feature::STEPPER;
+#elif !defined(ENCODER_SINGLE)
   has |= protocol::feature::QUADRATURE;
 #endif
   return has;

@@ -7,7 +7,7 @@ namespace tapreach {
 
 struct Hardware {
   uint32_t (*micros)();                            // [µs], wraps
-  void (*set_motors)(int16_t left, int16_t right); // PWM −255..255; 0 is off
+  void (*set_motors)(int16_t left, int16_t right); // PWM −255..255, steppers: steps/s; 0 is off
   void (*read_ticks)(int32_t ticks[2]);            // both at one moment; wrap
   uint16_t (*illegal_steps)();                     // encoder steps that cannot be, since boot; wraps
   void (*set_pulse)(uint8_t servo, uint16_t us);   // 0: no pulses

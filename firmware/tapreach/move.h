@@ -57,7 +57,7 @@ class Move {
   }
   bool stands(const Wheel& wheel, uint8_t i) const {
     const int32_t error = wheel.error_to(place(i, 1));
-    return wheel.speed() == 0 && error <= protocol::SETTLED_TICKS && error >= -protocol::SETTLED_TICKS;
+    return wheel.speed() == 0 && error <= SETTLED_TICKS && error >= -SETTLED_TICKS;
   }
 
   Trapezoid profile_;

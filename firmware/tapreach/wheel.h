@@ -4,18 +4,13 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "control.h"
 #include "protocol.h"
 
 namespace tapreach {
 
 constexpr float PERIOD_S = 1.0f / protocol::CONTROL_HZ;
 constexpr uint32_t PERIOD_US = 1000000UL / protocol::CONTROL_HZ;
-
-struct Control {
-  float kp = 20 / 256.0f, ki = 200 / 256.0f, kd = 0, feedforward = 20 / 256.0f;
-  int16_t max_speed = 4000;
-  uint16_t max_acceleration = 8000;
-};
 
 inline float clamp(float value, float limit) {
   return value > limit ? limit : value < -limit ? -limit : value;
@@ -24,7 +19,7 @@ inline float clamp(float value, float limit) {
 // The reference is a place [ticks] that moves: the integral of the speed error is the error of the place.
 class Wheel {
  public:
-  int16_t pwm = 0;
+  int16_t pwm = 0;  // with TAPREACH_STEPPER: steps/s
 
   // Forgets the past: stands at `ticks`.
   void rest_at(int32_t ticks) {
@@ -50,7 +45,7 @@ class Wheel {
     const int32_t whole = int32_t(fraction_);
     fraction_ -= float(whole);
     reference_ = int32_t(uint32_t(reference_) + uint32_t(whole));
-    const int32_t farthest = control.ki > 0 ? int32_t(fminf(255 / control.ki, 10000)) + 1 : 10000;
+    const int32_t farthest = control.ki > 0 ? int32_t(fminf(LARGEST_OUTPUT / control.ki, 10000)) + 1 : 10000;
     const int32_t error = error_to(reference_);
     if (error > farthest) reference_ = int32_t(uint32_t(ticks_) + uint32_t(farthest));
     if (error < -farthest) reference_ = int32_t(uint32_t(ticks_) - uint32_t(farthest));
@@ -61,22 +56,24 @@ class Wheel {
   void follow(int32_t reference, float speed, const Control& control) {
     reference_ = reference;
     const float error = clamp(speed, 32767) - speed_;
-    const float place = control.ki * float(error_to(reference));
+    // The reference is where it is to be after this period; steps come exactly, so nothing is to make up for that.
+    const float due = HAS_STEPPERS ? speed * PERIOD_S : 0;
+    const float place = control.ki * (float(error_to(reference)) - due);
     const float change = (error - last_error_) * (1 / PERIOD_S);
     last_error_ = error;
     const float by_speed = control.feedforward * speed + control.kp * error + control.kd * change;
-    pwm = int16_t(clamp(by_speed + clamp(place, 255) + push_, 255));
+    pwm = int16_t(clamp(by_speed + clamp(place, LARGEST_OUTPUT) + push_, LARGEST_OUTPUT));
   }
 
   // Towards a place where it is to stand: pushes harder while it sticks, lets go where it is near enough.
   void settle(int32_t place, const Control& control) {
     const int32_t error = error_to(place);
-    if (error >= -1 && error <= 1) {
+    if (error >= -NEAR_TICKS && error <= NEAR_TICKS) {
       push_ = 0;
       pwm = 0;
       return;
     }
-    push_ = speed_ == 0 ? clamp(push_ + (error > 0 ? PUSH : -PUSH), 255) : push_ * 0.8f;
+    push_ = speed_ == 0 ? clamp(push_ + (error > 0 ? PUSH : -PUSH), LARGEST_OUTPUT) : push_ * 0.8f;
     follow(place, 0, control);
   }
 

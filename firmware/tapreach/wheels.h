@@ -56,6 +56,7 @@ class Wheels {
   // PWM as it is, past the speed control; for lines of ros_arduino_bridge alone.
   uint8_t drive_raw(int16_t left, int16_t right, uint32_t now_us, uint16_t holds_ms) {
     if (left == 0 && right == 0) return drive(0, 0, now_us, 0, holds_ms);
+    if (HAS_STEPPERS) return result::UNKNOWN;  // steps without a ramp get lost
     const uint8_t refusal = refuses(false);
     if (refusal != result::OK) return refusal;
     if (move_.id != 0) return result::BUSY;
@@ -87,13 +88,15 @@ class Wheels {
   }
 
   uint8_t set_gains(const protocol::Gains& asked) {
-    const bool is_speed = asked.max_speed >= 1 && asked.max_speed <= 32767;
+    const bool is_speed = asked.max_speed >= 1 && asked.max_speed <= uint16_t(LARGEST_SPEED);
     if (!is_speed || asked.max_acceleration == 0) return result::OUT_OF_RANGE;
     if (state_ == state::DRIVING || state_ == state::MOVING) return result::BUSY;
-    control.kp = asked.kp / 256.0f;
-    control.ki = asked.ki / 256.0f;
-    control.kd = asked.kd / 256.0f;
-    control.feedforward = asked.feedforward / 256.0f;
+    if (!HAS_STEPPERS) {  // these need none
+      control.kp = asked.kp / 256.0f;
+      control.ki = asked.ki / 256.0f;
+      control.kd = asked.kd / 256.0f;
+      control.feedforward = asked.feedforward / 256.0f;
+    }
     control.max_speed = int16_t(asked.max_speed);
     control.max_acceleration = asked.max_acceleration;
     return result::OK;

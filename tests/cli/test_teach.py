@@ -20,7 +20,7 @@ from tapreach.errors import ConfigError, DriverError, InputError, LinkLost
 from tapreach.resources import resource_path
 
 SHIPPED = resource_path("robots") / "rover-pi.toml"
-WHEEL_H = Path(__file__).parents[2] / "firmware" / "tapreach" / "wheel.h"
+CONTROL_H = Path(__file__).parents[2] / "firmware" / "tapreach" / "control.h"
 
 
 class Scripted:
@@ -125,7 +125,7 @@ def test_wires_to_change_are_named_and_no_others(own_file, counts, answers, faul
 def test_gains_without_feedback_are_gentle_and_those_given_back_are_the_firmwares():
     assert pytest.approx(PWM, abs=1) == WITHOUT_FEEDBACK.feedforward / 256 * SPEED
     assert (WITHOUT_FEEDBACK.kp, WITHOUT_FEEDBACK.ki, WITHOUT_FEEDBACK.kd) == (0, 0, 0)
-    text = WHEEL_H.read_text(encoding="utf-8")
+    text = CONTROL_H.read_text(encoding="utf-8")
     line = "float kp = {} / 256.0f, ki = {} / 256.0f, kd = {}, feedforward = {} / 256.0f;"
     g = FIRMWARE_GAINS
     assert line.format(g.kp, g.ki, g.kd, g.feedforward) in text

@@ -33,7 +33,15 @@ class BoardName(StrEnum):
     YUN = "yun"
 
 
+class DriveKind(StrEnum):
+    """What turns the wheels."""
+
+    DC = "dc"
+    STEPPER = "stepper"
+
+
 OneBoard = Annotated[BoardName, typer.Option("--board", help="what it is built for")]
+Drive = Annotated[DriveKind, typer.Option("--drive", help="motors with encoders, or steppers")]
 Definitions = Annotated[
     list[str] | None, typer.Option("-D", help="NAME or NAME=VALUE, such as MOTOR_TB6612 or ENCODER_SINGLE")
 ]
@@ -42,6 +50,7 @@ Definitions = Annotated[
 @firmware.command("build")
 def build_command(
     board: OneBoard,
+    drive: Drive = DriveKind.DC,
     define: Definitions = None,
     out: Annotated[
         Path | None, typer.Option("--out", help="the ELF [default: out/firmware/BOARD.elf]")
@@ -49,20 +58,19 @@ def build_command(
 ) -> None:
     """Compile the firmware for a board."""
     console = Console(highlight=False)
-    built = _build(board_named(board.value), out, define)
+    built = _build(board_named(board.value), out, _with_drive(define, drive))
     console.print(_sentence(built), soft_wrap=True)
     console.print(f"{built.elf} and {hex_file(built).name}", soft_wrap=True)
     raise typer.Exit(0 if built.is_within_limits else TOO_LARGE)
 
 
 @firmware.command()
-def check(define: Definitions = None) -> None:
+def check(drive: Drive = DriveKind.DC, define: Definitions = None) -> None:
     """Compile for every board and say what it takes; exit code 1 where one is over its limit."""
+    names = _with_drive(define, drive)
     table = Table("board", "flash", "of", "RAM", "of", "fits")
     with TemporaryDirectory() as folder:
-        all_built = [
-            build(board, Path(folder) / f"{board.name}.elf", define or ()) for board in BOARDS.values()
-        ]
+        all_built = [build(board, Path(folder) / f"{board.name}.elf", names) for board in BOARDS.values()]
     for each in all_built:
         sizes = (each.flash, each.board.flash, each.ram, each.board.ram)
         table.add_row(each.board.title, *map(str, sizes), "yes" if each.is_within_limits else "no")
@@ -74,13 +82,14 @@ def check(define: Definitions = None) -> None:
 def flash(
     board: OneBoard,
     port: Annotated[str, typer.Option("--port", help="serial port of the board, such as /dev/ttyACM0")],
+    drive: Drive = DriveKind.DC,
     define: Definitions = None,
 ) -> None:
     """Compile the firmware and write it to a board by avrdude."""
     console = Console(highlight=False)
     chosen = board_named(board.value)
     programmer = _programmer()
-    built = _build(chosen, None, define)
+    built = _build(chosen, None, _with_drive(define, drive))
     if not built.is_within_limits:
         console.print(_sentence(built), soft_wrap=True)
         raise typer.Exit(TOO_LARGE)
@@ -89,8 +98,12 @@ def flash(
     console.print(f"{_sentence(built)} It is on the board at {port}.", soft_wrap=True)
 
 
-def _build(board: Board, out: Path | None, define: list[str] | None) -> Built:
-    return build(board, out or Path("out") / "firmware" / f"{board.name}.elf", define or ())
+def _with_drive(define: list[str] | None, drive: DriveKind) -> list[str]:
+    return [*(define or ()), *(["TAPREACH_STEPPER"] if drive is DriveKind.STEPPER else [])]
+
+
+def _build(board: Board, out: Path | None, define: list[str]) -> Built:
+    return build(board, out or Path("out") / "firmware" / f"{board.name}.elf", define)
 
 
 def _sentence(built: Built) -> str:

@@ -18,7 +18,7 @@ SPEED, ACCELERATION, PWM = 300, 600, 110
 SPIN_NS, EVERY_NS, REST_NS = 1 * SECOND, 50 * MS, 500 * MS
 FEW_TICKS = 10
 FIRMWARE_GAINS = Gains(20, 200, 0, 20, 4000, 8000)
-"""Those the firmware starts with (wheel.h): given back where the robot file has none."""
+"""Those the firmware starts with (control.h): given back where the robot file has none."""
 WITHOUT_FEEDBACK = Gains(0, 0, 0, round(256 * PWM / SPEED), SPEED, ACCELERATION)
 
 
