@@ -5,6 +5,7 @@ import math
 import os
 import shutil
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -127,19 +128,25 @@ class Operator:
         expect(self.page.locator("#motion")).to_have_text("Still")
 
 
+@contextmanager
+def operating(browser: Browser, address: str, scene: str) -> Iterator[Operator]:
+    """Somebody who has just opened the page of a robot in a shipped scene and holds the lease."""
+    troubles: list[str] = []
+    context = browser.new_context(viewport=TABLET, reduced_motion="reduce")  # type: ignore[arg-type]
+    page = context.new_page()
+    page.set_default_timeout(60_000)
+    page.on("pageerror", lambda error: troubles.append(str(error)))
+    page.add_init_script("localStorage.setItem('tapreach.hints', '3')")
+    page.goto(address)
+    page.wait_for_selector("body:not(.cannot-drive)")
+    expect(page.locator("#lease-who")).to_have_text("You")
+    yield Operator(page, address, scene)
+    context.close()
+    assert troubles == []
+
+
 @pytest.fixture
 def operator(browser: Browser, tmp_path: Path) -> Iterator[Operator]:
-    """Somebody who has just opened the page of a robot in the room `room` and holds the lease."""
-    troubles: list[str] = []
-    with tapreach_run(tmp_path, "--scene", "room") as run:
-        context = browser.new_context(viewport=TABLET, reduced_motion="reduce")  # type: ignore[arg-type]
-        page = context.new_page()
-        page.set_default_timeout(60_000)
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.add_init_script("localStorage.setItem('tapreach.hints', '3')")
-        page.goto(run.address)
-        page.wait_for_selector("body:not(.cannot-drive)")
-        expect(page.locator("#lease-who")).to_have_text("You")
-        yield Operator(page, run.address, "room")
-        context.close()
-    assert troubles == []
+    """Somebody at the page of a robot in the room `room`."""
+    with tapreach_run(tmp_path, "--scene", "room") as run, operating(browser, run.address, "room") as person:
+        yield person

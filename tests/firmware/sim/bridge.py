@@ -13,7 +13,8 @@ import tty
 
 from tests.firmware.sim.rover import Rover
 
-TICK_US = 1_000.0
+TICK_US = 2_000.0
+LONGEST_LAG_S = 1.0
 
 
 class Pty:
@@ -101,6 +102,8 @@ class Bridge:
         self.rover, self.line = rover, line
         self.is_plugged = True
         self.late_ticks = 0
+        self.worst_lag_s = 0.0
+        """By how much the board's time was behind the machine's at most."""
         self.failure: BaseException | None = None
         self.lock = threading.Lock()
         """Hold it to look at the rover while it runs in real time."""
@@ -157,5 +160,6 @@ class Bridge:
             self._ending.wait(spare)
             return due
         self.late_ticks += 1
-        # After a long pause of the machine the board does not race to catch up: it was not there either.
-        return due if spare > -0.1 else time.monotonic()
+        self.worst_lag_s = max(self.worst_lag_s, -spare)
+        # It catches up, so that its clock goes as ours; but after a pause it never was there either.
+        return due if spare > -LONGEST_LAG_S else time.monotonic()
