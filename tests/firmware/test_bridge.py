@@ -5,7 +5,7 @@ import select
 import socket
 
 import pytest
-from tests.firmware.sim.bridge import Bridge, Pty, Tcp
+from tests.firmware.sim.bridge import TICK_US, Bridge, Pty, Tcp
 from tests.firmware.sim.needs import needs_bed
 from tests.firmware.sim.rover import Rover
 from tests.firmware.sim.trivial import WIRING, trivial_elf
@@ -55,7 +55,7 @@ def test_nothing_happens_in_lock_step_without_a_turn(rover):
     assert not select.select([file], [], [], 0.05)[0]
     for _ in range(5):
         bridge.turn()
-    assert rover.now_us - began_us == pytest.approx(5_000, abs=5)
+    assert rover.now_us - began_us == pytest.approx(5 * TICK_US, abs=5)
     assert heard(file, 2) == b"hi"
     os.close(file)
     bridge.line.close()
