@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 from tapreach.drivers.arduino import wire
 from tapreach.drivers.arduino.frame_reader import Received
-from tapreach.errors import SetupError
+from tapreach.errors import DriverError, SetupError
 
 _CHECKOUT = Path(__file__).resolve().parents[3]
 _PACKAGES = "apt install gcc libc6-dev libsimavr-dev libelf-dev gcc-avr avr-libc arduino-core-avr"
@@ -92,7 +92,8 @@ def firmware_host(board: str, physics: bool = False, wraps_in_us: float | None =
     """Compile the firmware for `board` ("uno", "mega"), start it in its robot and open a framed session.
 
     With `physics` the wheels are those of the MuJoCo rover; `wraps_in_us` sets the board's clocks so that
-    they wrap so long after power-on. Raises SetupError outside a checkout of the
+    they wrap so long after power-on. Raises DriverError when the firmware does not do as it is told,
+    SetupError outside a checkout of the
     source or without the simulator.
     """
     bed = _bed()
@@ -102,6 +103,8 @@ def firmware_host(board: str, physics: bool = False, wraps_in_us: float | None =
         raise SetupError(f"{reason} ({_PACKAGES})") from None
     try:
         yield host
+    except AssertionError as failure:  # the bed's way to say that the firmware did something else
+        raise DriverError(f"the firmware did not do as it was told: {failure}") from failure
     finally:
         bed.stop(host)
 
