@@ -19,6 +19,7 @@ Generated from `docs/benchmarks/*.json`, the last full run of each bench; to ren
     tapreach bench fetch --jobs 2 --json docs/benchmarks/fetch.json
     tapreach bench online --json docs/benchmarks/online.json
     tapreach bench firmware --json docs/benchmarks/firmware.json
+    tapreach bench run --json docs/benchmarks/run.json
     tapreach bench document
 
 Milliseconds belong to the machine named with each bench. What carries over to another machine are the

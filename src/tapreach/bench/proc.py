@@ -1,4 +1,4 @@
-"""What Linux says about processes: CPU time used, children, and whether one still lives."""
+"""What Linux says about processes: CPU time and memory used, children, and whether one still lives."""
 
 import os
 from dataclasses import dataclass
@@ -22,6 +22,14 @@ def cpu_seconds(pid: int) -> float:
     """Return user and system time of a process, all threads [s]; steps of 10 ms. OSError when it is gone."""
     fields = _fields(pid)
     return (int(fields[_USER]) + int(fields[_SYSTEM])) / _TICKS_PER_SECOND
+
+
+def memory_bytes(pid: int) -> int:
+    """Return the memory of a process, its part of what it shares with others. OSError when it is gone."""
+    for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
+        if line.startswith("Pss:"):
+            return int(line.split()[1]) * 1024
+    raise FileNotFoundError(f"process {pid} has no memory left")
 
 
 def identify(pid: int) -> ProcessId:

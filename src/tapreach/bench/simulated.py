@@ -1,4 +1,4 @@
-"""A real `tapreach run` with the simulated robot, as a newcomer starts it."""
+"""A real `tapreach run`, with the simulated robot as a newcomer starts it, or with another."""
 
 import asyncio
 import contextlib
@@ -15,7 +15,7 @@ from tapreach.bench.video_client import Viewing, view
 from tapreach.errors import SetupError
 from tapreach.robot.clock import SECOND, Clock
 
-_COMMAND = ("-c", "from tapreach.cli.main import main; main()", "run", "--robot", "sim", "--port", "0")
+_COMMAND = ("-c", "from tapreach.cli.main import main; main()", "run", "--port", "0", "--robot")
 _ADDRESS = re.compile(rb"http://[\w.]+:(\d+)/")
 _START_SECONDS = 60.0
 _LEAVE_SECONDS = 10.0
@@ -53,10 +53,11 @@ class SimulatedRun:
 
 
 @contextlib.asynccontextmanager
-async def simulated_run(clock: Clock) -> AsyncIterator[SimulatedRun]:
-    """Run `tapreach run --robot sim` while the block runs; every process of it is gone afterwards."""
+async def simulated_run(clock: Clock, robot: str = "sim") -> AsyncIterator[SimulatedRun]:
+    """Run `tapreach run --robot ...` while the block runs; every process of it is gone afterwards."""
     begun_ns = clock.now_ns()
-    process = await asyncio.create_subprocess_exec(sys.executable, *_COMMAND, stdout=asyncio.subprocess.PIPE)
+    words = (*_COMMAND, robot)
+    process = await asyncio.create_subprocess_exec(sys.executable, *words, stdout=asyncio.subprocess.PIPE)
     members: list[ProcessId] = []
     try:
         port = await asyncio.wait_for(_announced_port(process), _START_SECONDS)

@@ -10,6 +10,7 @@ from tapreach.bench.ending import finish
 from tapreach.bench.figure import Figure, at_least, at_most
 from tapreach.bench.painted import CANVAS, painted_ages_ms, watch_painting
 from tapreach.bench.proc import ProcessId, cpu_seconds
+from tapreach.bench.process_role import role_of
 from tapreach.bench.report import Section
 from tapreach.bench.sample import median, percentile, slope
 from tapreach.bench.simulated import SimulatedRun, simulated_run
@@ -21,7 +22,6 @@ START_LIMIT_S = 5.0
 WANTED_HZ = 30.0
 SPIN = Twist(0.0, 0.6)
 RAMP_NS = SECOND
-_ROLES = {"tapreach.drivers.sim": "simulator", "tapreach.tasks.compute": "compute"}
 
 
 async def measure_simulator(starts: int, seconds: float, clock: Clock) -> Section:
@@ -76,7 +76,7 @@ def _cpu(members: list[ProcessId]) -> dict[str, float]:
     """Return seconds used so far by role; processes that have ended are left out."""
     used: dict[str, float] = {}
     for member in members:
-        role = next((name for part, name in _ROLES.items() if part in member.command), "server")
+        role = role_of(member)
         try:
             used[role] = used.get(role, 0.0) + cpu_seconds(member.pid)
         except OSError:

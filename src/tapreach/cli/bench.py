@@ -14,6 +14,7 @@ from tapreach.bench import control as control_bench
 from tapreach.bench import fetch as fetch_bench
 from tapreach.bench import fetch_plan, locate_plan, tracking_plan
 from tapreach.bench import firmware as firmware_bench
+from tapreach.bench import footprint as footprint_bench
 from tapreach.bench import locate as locate_bench
 from tapreach.bench import online_path as online_bench
 from tapreach.bench import tracking as tracking_bench
@@ -194,6 +195,18 @@ def firmware(
     if smoke:
         plan = firmware_bench.smoke_plan(used, board)
     _run(lambda on_section: firmware_bench.run_firmware(plan, on_section, MonotonicClock()), json)
+
+
+@bench.command("run")
+def run_command(
+    smoke: Smoke = False,
+    robot: Annotated[str, typer.Option(help="a shipped robot or the path of a robot file")] = "sim",
+    seconds: Seconds = 20.0,
+    json: Json = None,
+) -> None:
+    """Memory and processor that `tapreach run` takes on this machine, with and without a viewer. A minute."""
+    plan = footprint_bench.FootprintPlan(robot, 1.0 if smoke else seconds, smoke)
+    _run(lambda on_section: footprint_bench.run_footprint(plan, on_section, MonotonicClock()), json)
 
 
 @bench.command()
