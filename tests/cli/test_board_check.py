@@ -8,7 +8,7 @@ from tests.drivers.arduino.peer import PeerBoard
 
 from tapreach.cli.checkup.board_check import check_board
 from tapreach.cli.checkup.check import Verdict
-from tapreach.drivers.arduino.wire import Drive, Fault, Hello, Move, Ping, ResetCause, Servos, Stop
+from tapreach.drivers.arduino.wire import Drive, Fault, Hello, Move, Ping, ResetCause, Servos, Stop, Welcome
 from tapreach.resources import resource_path
 from tapreach.robot.config import load_robot
 
@@ -44,6 +44,21 @@ def test_board_that_is_well_passes_with_its_figures_and_is_left_as_it_is():
     assert checks["battery"].found == "7.40 V"
     assert not any(isinstance(message, Drive | Move | Servos) for message in board.asked)
     assert {type(message) for message in board.asked} == {Hello, Ping, Stop}
+
+
+@pytest.mark.parametrize(("version", "word"), [(0, "older"), (9, "newer")])
+def test_firmware_of_another_version_is_a_warning_with_the_way_to_flash(version, word):
+    class Other(IllBoard):
+        def say(self, message):
+            is_welcome = isinstance(message, Welcome)
+            super().say(replace(message, firmware=version) if is_welcome else message)
+
+    async def scenario(visit, board, clock):
+        return {check.name: check for check in await check_board(visit, ARM, clock)}
+
+    firmware = play_visit(scenario, Other)["firmware"]
+    assert firmware.verdict is Verdict.WARN
+    assert word in firmware.advice and "tapreach firmware flash" in firmware.advice
 
 
 def test_mute_board_fails_with_the_firmware_to_flash_and_the_rest_is_unknown():

@@ -7,15 +7,18 @@ import pty
 
 import pytest
 from tests.cli.test_teach import SHIPPED, Scripted, motor_answers
-from tests.cli.visited_board import STEP_NS, play_clocked
+from tests.cli.visited_board import STEP_NS, play_clocked, play_visit
 from tests.firmware.host.board import HAS_COMPILER, Board
 from typer.testing import CliRunner
 
+from tapreach.cli.checkup.board_check import check_board
+from tapreach.cli.checkup.check import Verdict
 from tapreach.cli.main import app
 from tapreach.cli.teaching.motors import PWM
 from tapreach.cli.teaching.person import TeachingStopped, Terminal
 from tapreach.cli.teaching.teach import Lesson, teach
 from tapreach.errors import InputError
+from tapreach.robot.config import load_robot
 
 needs_compiler = pytest.mark.skipif(not HAS_COMPILER, reason="needs g++ (Debian: apt-get install g++)")
 
@@ -54,6 +57,18 @@ def test_motors_turn_gently_without_feedback_and_stand_afterwards(tmp_path):
     assert 0.8 * PWM < board.most_pwm <= PWM + 2
     assert all(100 < angle < 1600 for angle in board.board.angles)
     assert board.board.pwm == (0, 0)
+
+
+@needs_compiler
+def test_doctor_finds_the_firmware_well():
+    arm = load_robot(SHIPPED).arm
+
+    async def scenario(visit, board, clock):
+        return await check_board(visit, arm, clock)
+
+    checks = play_visit(scenario, FirmwareBoard)
+    assert {check.verdict for check in checks} == {Verdict.OK}, checks
+    assert checks[2].found == "7.40 V"
 
 
 @needs_compiler

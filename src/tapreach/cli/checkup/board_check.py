@@ -1,10 +1,13 @@
 """Does the board answer, which firmware is on it, how is its battery, and what do its servos say?"""
 
+import re
+
 from tapreach.cli.checkup.check import Check, Verdict, graded
 from tapreach.drivers.arduino.fault_words import fault_sentence, restart_sentence
 from tapreach.drivers.arduino.servos import ServoMap
 from tapreach.drivers.arduino.visit import BoardVisit
 from tapreach.drivers.arduino.wire import TELEMETRY_HZ, Fault, Feature, ResetCause, Telemetry, Welcome
+from tapreach.resources import resource_path
 from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.clock import MS, SECOND, Clock
 
@@ -71,11 +74,25 @@ def _firmware(welcome: Welcome, faults: Fault) -> Check:
     }
     if faults:
         return Check("firmware", Verdict.FAIL, f"{found}; a fault stands", fault_sentence(faults), figures)
+    if welcome.firmware != (shipped := shipped_firmware()):
+        older = "older" if welcome.firmware < shipped else "newer"
+        advice = (
+            f"{older} than the firmware that comes with this Tapreach, {shipped}: tapreach firmware flash"
+        )
+        return Check("firmware", Verdict.WARN, found, advice, figures)
     if welcome.reset_cause & (ResetCause.BROWN_OUT | ResetCause.WATCHDOG) and not (
         welcome.reset_cause & ResetCause.POWER_ON
     ):
         return Check("firmware", Verdict.WARN, found, restart_sentence(welcome.reset_cause), figures)
     return Check("firmware", Verdict.OK, found, "", figures)
+
+
+def shipped_firmware() -> int:
+    """Return the version of the firmware that comes with this Tapreach."""
+    text = (resource_path("firmware") / "tapreach" / "hardware.h").read_text(encoding="utf-8")
+    found = re.search(r"FIRMWARE_VERSION = (\d+);", text)
+    assert found is not None, "firmware/tapreach/hardware.h says no version"
+    return int(found.group(1))
 
 
 def _words(feature: Feature) -> str:

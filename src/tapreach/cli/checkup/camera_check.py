@@ -1,6 +1,7 @@
 """Do pictures come, how many a second, and how old are they on arrival?"""
 
 import statistics
+from collections.abc import Callable
 from itertools import pairwise
 
 from tapreach.cli.checkup.check import Check, Verdict, graded, worst
@@ -12,6 +13,8 @@ from tapreach.robot.messages import Frame
 
 FIRST_NS, LOOK_NS, LOOKED_AT = 6 * SECOND, 4 * SECOND, 60
 """The first picture may take so long; then 60 are looked at, or what comes in 4 s."""
+FAILING_NS = 2 * SECOND
+"""Where opening it fails, and fails again, so long is enough."""
 FEW, FAR_TOO_FEW = 0.8, 0.3  # of the rate in the robot file
 OLD_MS, TOO_OLD_MS = 250.0, 500.0
 """Older than 500 ms a picture freezes the page; half of that leaves little for the way to the tablet."""
@@ -23,8 +26,14 @@ async def check_camera(camera: RobotCamera, section: CameraSection, clock: Clock
     if section.source is None:
         return Check("camera", Verdict.WARN, "the robot file names no camera", NO_SOURCE)
     camera.start()
+    opening, began_ns = camera.status.reason, clock.now_ns()
+
+    def has_failed() -> bool:
+        is_failing = not camera.status.is_running and camera.status.reason != opening
+        return is_failing and clock.now_ns() - began_ns >= FAILING_NS
+
     try:
-        frames = await _frames(camera, clock)
+        frames = await _frames(camera, clock, has_failed)
         reason = camera.status.reason
     finally:
         await camera.close()
@@ -67,12 +76,14 @@ def judged_frames(frames: list[Frame], section: CameraSection) -> Check:
     return Check("camera", verdict, found, "; ".join(advice), figures)
 
 
-async def _frames(source: FrameSource, clock: Clock) -> list[Frame]:
+async def _frames(
+    source: FrameSource, clock: Clock, has_failed: Callable[[], bool] = lambda: False
+) -> list[Frame]:
     frames: list[Frame] = []
     unsubscribe = source.subscribe(frames.append)
     end_ns = clock.now_ns() + FIRST_NS
     has_begun = False
-    while clock.now_ns() < end_ns and len(frames) <= LOOKED_AT:
+    while clock.now_ns() < end_ns and len(frames) <= LOOKED_AT and not (has_failed() and not frames):
         if frames and not has_begun:
             has_begun, end_ns = True, clock.now_ns() + LOOK_NS
         await clock.sleep_until(clock.now_ns() + 10 * MS)

@@ -4,9 +4,8 @@ The wheels are driven without feedback: an encoder the wrong way round would mak
 """
 
 from tapreach.cli.teaching.person import Person
-from tapreach.drivers.arduino.fault_words import refusal_words
 from tapreach.drivers.arduino.visit import BoardVisit
-from tapreach.drivers.arduino.wire import Drive, Gains, Result, Stop
+from tapreach.drivers.arduino.wire import Drive, Gains, Stop
 from tapreach.errors import DriverError, LinkLost
 from tapreach.robot.clock import MS, SECOND
 from tapreach.robot.link_section import LinkSection
@@ -29,7 +28,7 @@ async def try_motors(visit: BoardVisit, person: Person, link: LinkSection) -> li
     """
     person.tell("One wheel after the other turns forward for a second, slowly.")
     await person.ask("Are both wheels off the ground, and free?", ("yes",))
-    await _ask(visit, WITHOUT_FEEDBACK)
+    await visit.require(WITHOUT_FEEDBACK)
     try:
         faults: list[str] = []
         for side in SIDES:
@@ -65,13 +64,13 @@ def _encoder_faults(seen: str, sign: int, ticks: dict[str, int]) -> list[str]:
 
 async def _spin(visit: BoardVisit, side: str) -> dict[str, int]:
     """Turn one wheel and return the ticks of both."""
-    await _ask(visit, Drive(0, 0, visit.session.at_ms))
+    await visit.require(Drive(0, 0, visit.session.at_ms))
     before = _ticks(visit)
     left, right = (SPEED if side == each else 0 for each in SIDES)
     for _ in range(SPIN_NS // EVERY_NS):
         visit.session.send(Drive(left, right, visit.session.at_ms))
         await visit.pause(EVERY_NS)
-    await _ask(visit, Stop())
+    await visit.require(Stop())
     await visit.pause(REST_NS)
     after = _ticks(visit)
     return {each: _difference(after[each], before[each]) for each in SIDES}
@@ -100,12 +99,6 @@ async def _give_gains_back(visit: BoardVisit, person: Person, link: LinkSection)
         gains = Gains(kp, ki, kd, feedforward, FIRMWARE_GAINS.max_speed, FIRMWARE_GAINS.max_acceleration)
     try:
         visit.session.send(Stop())
-        await _ask(visit, gains)
+        await visit.require(gains)
     except DriverError:
         person.tell("The board did not take its wheel control back: switch it off and on before you drive.")
-
-
-async def _ask(visit: BoardVisit, message: Drive | Gains | Stop) -> None:
-    result = await visit.ask(message)
-    if result is not Result.OK:
-        raise DriverError(f"the board refuses {type(message).__name__}: {refusal_words(result)}")

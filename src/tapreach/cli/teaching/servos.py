@@ -5,10 +5,9 @@ from typing import Literal
 
 from tapreach.cli.teaching.file_changes import Changes
 from tapreach.cli.teaching.person import Person
-from tapreach.drivers.arduino.fault_words import refusal_words
 from tapreach.drivers.arduino.servos import Pulses, ServoMap, values_of
 from tapreach.drivers.arduino.visit import BoardVisit
-from tapreach.drivers.arduino.wire import Result, ServoLimits, Servos, ToFirmware
+from tapreach.drivers.arduino.wire import ServoLimits, Servos
 from tapreach.errors import DriverError, InputError
 from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.clock import MS, SECOND
@@ -64,7 +63,7 @@ def rest_pulses(arm: ArmSection) -> Pulses:
 
 
 async def _teach_joint(visit: BoardVisit, person: Person, joint: Joint, rest_us: int) -> Changes:
-    await _ask(visit, ServoLimits(joint.index, SHORTEST_US, LONGEST_US, rest_us))
+    await visit.require(ServoLimits(joint.index, SHORTEST_US, LONGEST_US, rest_us))
     at_us = await _go(visit, joint.index, rest_us)
     at_us = low_us = await _jog(visit, person, joint, at_us, "the end of its way with the shorter pulse")
     at_us = high_us = await _jog(visit, person, joint, at_us, "the end of its way with the longer pulse")
@@ -75,7 +74,7 @@ async def _teach_joint(visit: BoardVisit, person: Person, joint: Joint, rest_us:
     is_reversed = await _is_reversed(visit, person, joint, middle_us)
     zero_us = await _jog(visit, person, joint, middle_us + DIRECTION_US, joint.zero, low_us, high_us)
     end_us = await _go(visit, joint.index, max(low_us, min(high_us, rest_us)))
-    await _ask(visit, ServoLimits(joint.index, low_us, high_us, end_us))
+    await visit.require(ServoLimits(joint.index, low_us, high_us, end_us))
     at = ("arm", "servos", joint.name)
     return {
         (*at, "low_us"): low_us,
@@ -114,7 +113,7 @@ async def _go(visit: BoardVisit, index: Index, pulse_us: int) -> int:
     pulses[index], speeds[index] = pulse_us, SPEED_US_PER_S
     a, b, c, d = pulses
     e, f, g, h = speeds
-    await _ask(visit, Servos((a, b, c, d), (e, f, g, h)))
+    await visit.require(Servos((a, b, c, d), (e, f, g, h)))
     arrived = await visit.until(lambda: _is_there(visit, index, pulse_us), ARRIVAL_NS)
     if not arrived:
         raise DriverError(f"the board did not bring servo {'ABCD'[index]} to {pulse_us} µs: {visit.reason}")
@@ -125,9 +124,3 @@ async def _go(visit: BoardVisit, index: Index, pulse_us: int) -> int:
 def _is_there(visit: BoardVisit, index: Index, pulse_us: int) -> bool:
     told = visit.telemetry
     return told is not None and abs(told.pulse_us[index] - pulse_us) <= ARRIVED_US
-
-
-async def _ask(visit: BoardVisit, message: ToFirmware) -> None:
-    result = await visit.ask(message)
-    if result is not Result.OK:
-        raise DriverError(f"the board refuses {type(message).__name__}: {refusal_words(result)}")

@@ -6,11 +6,12 @@ from contextlib import suppress
 from typing import Self
 
 from tapreach.drivers.arduino.board import NO_FIRMWARE, NO_FRAMES
+from tapreach.drivers.arduino.fault_words import refusal_words
 from tapreach.drivers.arduino.link import Link
 from tapreach.drivers.arduino.ports import OpenPort, open_port
 from tapreach.drivers.arduino.session import Phase, Session
 from tapreach.drivers.arduino.wire import Moved, Result, Stop, Telemetry, ToFirmware, Welcome
-from tapreach.errors import LinkLost
+from tapreach.errors import DriverError, LinkLost
 from tapreach.robot.clock import MS, SECOND, Clock
 from tapreach.robot.link_section import LinkSection
 
@@ -107,6 +108,12 @@ class BoardVisit:
             if (answer := self._answer_to(message)) is not None:
                 return answer
         raise LinkLost(self.reason or "the board does not answer: check its cable")
+
+    async def require(self, message: ToFirmware) -> None:
+        """Like `ask`; raises DriverError with the reason where the board refuses."""
+        result = await self.ask(message)
+        if result is not Result.OK:
+            raise DriverError(f"the board refuses {type(message).__name__}: {refusal_words(result)}")
 
     def _answer_to(self, message: ToFirmware) -> Result | None:
         return next((result for each, result in self._answers if each == message), None)
