@@ -1,14 +1,18 @@
 """`tapreach install`: what it writes is read back, and judged by systemd's own checker."""
 
 import configparser
+import http.client
 import itertools
 import os
 import re
 import shutil
+import signal
 import stat
 import subprocess
+from contextlib import closing
 
 import pytest
+from tests.scenarios.running import tapreach_run
 from typer.testing import CliRunner
 
 from tapreach.cli.deployment.files import PlannedFile, write_file
@@ -183,6 +187,26 @@ def test_file_is_whole_or_not_there(tmp_path):
     write_file(tmp_path, PlannedFile(target.relative_to(tmp_path) / "a", "two\n", 0o644))
     assert [p.name for p in target.iterdir()] == ["a"]
     assert (target / "a").read_text() == "two\n"
+
+
+def status(port, query):
+    with closing(http.client.HTTPConnection("127.0.0.1", port, timeout=10)) as link:
+        link.request("GET", f"/{query}")
+        return link.getresponse().status
+
+
+def test_run_lets_in_who_has_the_token_of_the_file_and_does_not_print_it(tmp_path):
+    path = tmp_path / "token"
+    path.write_text("abcdefghijklmnop\n", encoding="ascii")
+    words = "--robot", "fake", "--lan", "--token-file", str(path)
+    with tapreach_run(tmp_path / "captures", *words) as running:
+        port = int(re.search(r":(\d+)/", running.address).group(1))
+        answers = [status(port, query) for query in ("", "?token=wrong", "?token=abcdefghijklmnop")]
+        printed = running.end(signal.SIGINT)
+    assert answers[:2] == [401, 401]
+    assert answers[2] in (200, 302, 303, 307)
+    assert "abcdefghijklmnop" not in printed
+    assert str(path) in printed.replace("\n", "")
 
 
 def test_run_takes_its_token_from_a_file_that_holds_one(tmp_path):

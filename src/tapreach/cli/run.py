@@ -52,7 +52,8 @@ def run(
     clock = MonotonicClock()
     station = Station(make_robot(description, clock), clock, captures)
     host = address_in_network() if lan else "localhost"
-    address = page_address(host, listener.getsockname()[1], token)
+    # A token that stays is not told anew at every start: what is printed may end up in a journal.
+    address = page_address(host, listener.getsockname()[1], None if token_file else token)
     policy = AccessPolicy(token, host_names=[host])
     console.print(f"Starting the robot {description.name!r} ...")
     run_event_loop(
@@ -79,10 +80,11 @@ def _announcer(
 ) -> Callable[[], None]:
     def announce() -> None:
         console.print(f"\n  Open  [bold]{address}[/bold]\n", soft_wrap=True)
-        if lan:
+        if token_file is not None:
+            console.print(f"with ?token=... as in {token_file}; it stays the same.", markup=False)
+        elif lan:
             console.print(qr_code(address), markup=False)
-            changes = "It changes with every start." if token_file is None else "It stays the same."
-            console.print(f"Whoever has this address can drive. {changes}")
+            console.print("Whoever has this address can drive. It changes with every start.")
         else:
             console.print("For a tablet on the same network, start with --lan: it prints a QR code.")
         console.print("Ctrl-C ends it.")

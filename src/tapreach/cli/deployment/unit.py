@@ -29,6 +29,7 @@ Restart=always
 RestartSec=3
 # Ctrl-C: the wheels stop, ports and cameras are let go of.
 KillSignal=SIGINT
+KillMode=mixed
 TimeoutStopSec=10
 
 # It needs serial ports, cameras, the network, and to write what it records; nothing else.
@@ -50,7 +51,7 @@ ProtectKernelLogs=yes
 ProtectKernelModules=yes
 ProtectKernelTunables=yes
 ProtectProc=invisible
-RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6
+RestrictAddressFamilies=AF_UNIX AF_INET AF_INET6 AF_NETLINK
 RestrictNamespaces=yes
 RestrictSUIDSGID=yes
 LockPersonality=yes
