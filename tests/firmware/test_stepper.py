@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from tapreach.cli.firmware import firmware
 from tapreach.drivers.arduino import wire
 from tapreach.drivers.arduino.build import missing_tools
-from tapreach.drivers.arduino.wire import Feature, MoveResult, Result, State
+from tapreach.drivers.arduino.wire import Fault, Feature, MoveResult, Result, State
 
 needs_host = pytest.mark.skipif(not HAS_COMPILER, reason="needs g++ (Debian: apt-get install g++)")
 needs_compiler = pytest.mark.skipif(
@@ -25,6 +25,7 @@ PERIOD_S = 1 / wire.CONTROL_HZ
 BY_PLACE = 24
 """What the hold of the place may add to a ramp's change in a period [steps/s]: three steps of error."""
 MOST_ACCELERATION = 6000
+FASTEST = 4500
 STEP_PINS = WIRING["uno"].pwm
 
 
@@ -168,4 +169,14 @@ def test_every_step_that_is_told_was_made_at_the_pin_of_an_uno(tmp_path):
     rover.run(1000.0)
     made = [(rover.avr.edges(pin) - first) / 2 for pin, first in zip(STEP_PINS, before, strict=True)]
     assert made == [1000, 400]
+    assert host.ask(wire.Servos((1600, 0, 0, 0), (0, 0, 0, 0))) is Result.OK
+    at = host.telemetry()
+    before = [rover.avr.edges(pin) for pin in STEP_PINS]
+    host.drive_for(FASTEST, -FASTEST, 1_200_000.0)
+    told = host.telemetry()
+    assert (told.faults, told.state) == (Fault(0), State.DRIVING)
+    assert (told.left_speed, told.right_speed) == pytest.approx((FASTEST, -FASTEST), abs=60)
+    made = [(rover.avr.edges(pin) - first) / 2 for pin, first in zip(STEP_PINS, before, strict=True)]
+    assert made == pytest.approx((told.left - at.left, at.right - told.right), abs=0.04 * FASTEST)
+    assert rover.avr.pulse_us(WIRING["uno"].servos[0]) == pytest.approx(1600, abs=20)
     rover.close()
