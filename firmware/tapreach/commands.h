@@ -102,6 +102,7 @@ class Commands {
       case protocol::Clear::TYPE: return clear(body, length);
       case protocol::Gains::TYPE: return gains(body, length);
       case protocol::ServoLimits::TYPE: return servo_limits(body, length);
+      case protocol::Wiring::TYPE: return wiring(body, length);
       case protocol::Hello::TYPE:
       case protocol::Ping::TYPE: return result::BAD_LENGTH;
       default: return result::UNKNOWN;
@@ -155,6 +156,15 @@ class Commands {
   uint8_t servo_limits(const uint8_t* from, uint8_t length) {
     protocol::ServoLimits asked;
     return fits(from, length, asked) ? robot_.limit_servo(asked) : result::BAD_LENGTH;
+  }
+
+  uint8_t wiring(const uint8_t* from, uint8_t length) {
+    protocol::Wiring asked;
+    if (!fits(from, length, asked)) return result::BAD_LENGTH;
+    const uint8_t motors = asked.reversed & 3, encoders = uint8_t(asked.reversed >> 2);
+    // Without quadrature the direction of a count is that of the motor: turned round is both or neither.
+    const bool is_alike = (identity_.features & protocol::feature::QUADRATURE) || motors == encoders;
+    return encoders <= 3 && is_alike ? robot_.wheels.set_wiring(asked.reversed) : uint8_t(result::OUT_OF_RANGE);
   }
 
   Robot& robot_;

@@ -90,6 +90,14 @@ constexpr uint8_t BROWN_OUT = 1 << 2;  // low supply voltage
 constexpr uint8_t WATCHDOG = 1 << 3;  // the program hung
 }
 
+// What is wired the other way round, as a wheel that goes forward shows it.
+namespace reversed {
+constexpr uint8_t LEFT_MOTOR = 1 << 0;  // turns back
+constexpr uint8_t RIGHT_MOTOR = 1 << 1;  // turns back
+constexpr uint8_t LEFT_ENCODER = 1 << 2;  // counts down
+constexpr uint8_t RIGHT_ENCODER = 1 << 3;  // counts down
+}
+
 struct Hello {
   static constexpr uint8_t TYPE = 0x01, SIZE = 1;
   uint8_t version;  // protocol version of the host
@@ -204,6 +212,15 @@ struct Ping {
   void read(const uint8_t* body) {
     BodyReader reader{body};
     reader.take(token);
+  }
+};
+
+struct Wiring {
+  static constexpr uint8_t TYPE = 0x0B, SIZE = 1;
+  uint8_t reversed;  // others are as wired; without Quadrature an encoder goes with its motor
+  void read(const uint8_t* body) {
+    BodyReader reader{body};
+    reader.take(reversed);
   }
 };
 

@@ -5,6 +5,7 @@
 #include "hardware.h"
 #include "move.h"
 #include "wheel.h"
+#include "wiring.h"
 
 namespace tapreach {
 
@@ -17,7 +18,7 @@ class Wheels {
  public:
   Control control;
 
-  explicit Wheels(const Hardware& hardware) : hardware_(hardware) {}
+  explicit Wheels(const Hardware& hardware) : wiring_(hardware) {}
 
   uint8_t state() const { return state_; }
   const Wheel* both() const { return wheels_; }
@@ -34,7 +35,7 @@ class Wheels {
       asked_[i] = 0;
       wheels_[i].rest_at(wheels_[i].ticks());
     }
-    hardware_.set_motors(0, 0);
+    wiring_.set_motors(0, 0);
   }
 
   // A speed that holds for `holds_ms`; the command is `age_us` old. [ticks/s]
@@ -102,6 +103,12 @@ class Wheels {
     return result::OK;
   }
 
+  uint8_t set_wiring(uint8_t reversed) {
+    if (state_ == state::DRIVING || state_ == state::MOVING) return result::BUSY;
+    wiring_.set(reversed);
+    return result::OK;
+  }
+
   // As often as possible.
   void watch(uint32_t now_us) {
     if (!deadman_.has_expired(now_us)) return;
@@ -112,7 +119,7 @@ class Wheels {
   // Once a period, before `step`.
   void measure() {
     int32_t ticks[SIDES];
-    hardware_.read_ticks(ticks);
+    wiring_.read_ticks(ticks);
     for (uint8_t i = 0; i < SIDES; i++) wheels_[i].measure(ticks[i]);
   }
 
@@ -120,7 +127,7 @@ class Wheels {
     if (state_ == state::MOVING) step_move();
     else if (state_ == state::DRIVING && !is_raw_) step_drive();
     const bool is_on = state_ == state::MOVING || state_ == state::DRIVING;
-    if (is_on) hardware_.set_motors(wheels_[LEFT].pwm, wheels_[RIGHT].pwm);
+    if (is_on) wiring_.set_motors(wheels_[LEFT].pwm, wheels_[RIGHT].pwm);
   }
 
   // True once after a move has ended.
@@ -180,7 +187,7 @@ class Wheels {
     for (uint8_t i = 0; i < SIDES; i++) wheels_[i].follow_speed(target_[i], control);
   }
 
-  const Hardware& hardware_;
+  Wiring wiring_;
   Wheel wheels_[SIDES];
   Move move_;
   Deadman deadman_;

@@ -15,9 +15,21 @@ from tapreach.cli.teaching.motors import FIRMWARE_GAINS, PWM, SPEED, WITHOUT_FEE
 from tapreach.cli.teaching.person import TeachingStopped
 from tapreach.cli.teaching.servos import SPEED_US_PER_S, STEPS_US
 from tapreach.cli.teaching.teach import Lesson, teach
-from tapreach.drivers.arduino.wire import Drive, Fault, Feature, Gains, Move, ServoLimits, Servos, Welcome
+from tapreach.drivers.arduino.wire import (
+    Drive,
+    Fault,
+    Feature,
+    Gains,
+    Move,
+    Reversed,
+    ServoLimits,
+    Servos,
+    Welcome,
+    Wiring,
+)
 from tapreach.errors import ConfigError, DriverError, InputError, LinkLost
 from tapreach.resources import resource_path
+from tapreach.robot.config import load_robot
 
 SHIPPED = resource_path("robots") / "rover-pi.toml"
 CONTROL_H = Path(__file__).parents[2] / "firmware" / "tapreach" / "control.h"
@@ -100,11 +112,8 @@ def test_motors_that_are_right_pass_slowly_and_the_board_gets_its_gains_back(own
 @pytest.mark.parametrize(
     ("counts", "answers", "faults"),
     [
-        (lambda a, b: (-a, b), {}, ["left encoder counts back"]),
-        (lambda a, b: (a, -b), {}, ["right encoder counts back"]),
         (lambda a, b: (b, a), {}, ["right encoder counts the left", "left encoder counts the right"]),
         (lambda a, b: (0, b), {}, ["left encoder counts nothing"]),
-        (lambda a, b: (-a, b), {"left": ("left", "back")}, ["left motor turns back: swap its two wires"]),
         (lambda a, b: (a, b), {"left": ("none",)}, ["left motor: no motion"]),
         (
             lambda a, b: (b, a),
@@ -120,6 +129,39 @@ def test_wires_to_change_are_named_and_no_others(own_file, counts, answers, faul
     named = [line for line in person.told if line.startswith("  - ")]
     assert len(named) == len(faults)
     assert all(fault in line for fault, line in zip(faults, named, strict=True)), named
+
+
+TURNED_ROUND = [
+    (lambda a, b: (-a, b), {}, ["left_encoder"]),
+    (lambda a, b: (a, -b), {}, ["right_encoder"]),
+    (lambda a, b: (-a, b), {"left": ("left", "back")}, ["left_motor"]),
+    (lambda a, b: (a, b), {"right": ("right", "back")}, ["right_motor", "right_encoder"]),
+]
+
+
+@pytest.mark.parametrize(("counts", "answers", "parts"), TURNED_ROUND)
+def test_what_is_the_other_way_round_is_written_and_no_comment_is_lost(own_file, counts, answers, parts):
+    person = Scripted(*motor_answers(**answers), "yes")
+    is_right, _ = taught(Lesson.MOTORS, own_file, person, lambda board: setattr(board, "counts", counts))
+    assert is_right
+    before, after = SHIPPED.read_text(encoding="utf-8"), own_file.read_text(encoding="utf-8")
+    assert list(load_robot(own_file).link.reversed) == parts
+    added = [line for line in after.splitlines() if line not in before.splitlines()]
+    assert added == ["reversed = [" + ", ".join(f'"{part}"' for part in parts) + "]"]
+    assert [line for line in after.splitlines() if line not in added] == before.splitlines()
+
+
+def test_reversal_of_the_file_is_told_to_the_board_first_and_taken_back_where_it_is_wrong(own_file):
+    text = own_file.read_text(encoding="utf-8")
+    own_file.write_text(changed_text(text, {("link", "reversed"): ["left_motor"]}, "x"), encoding="utf-8")
+    person = Scripted(*motor_answers(left=("left", "back")), "no")
+    is_right, board = taught(
+        Lesson.MOTORS, own_file, person, lambda board: setattr(board, "counts", lambda a, b: (-a, b))
+    )
+    assert not is_right
+    assert board.asked.index(Wiring(Reversed.LEFT_MOTOR)) < board.asked.index(WITHOUT_FEEDBACK)
+    assert '-reversed = ["left_motor"]\n+reversed = []' in person.text
+    assert "Swap wires then" in person.text
 
 
 def test_gains_without_feedback_are_gentle_and_those_given_back_are_the_firmwares():

@@ -10,6 +10,7 @@ from tapreach.robot.section import Positive, Section
 Protocol = Literal["tapreach", "ros_arduino_bridge"]
 USUAL_BAUD: dict[Protocol, int] = {"tapreach": 115200, "ros_arduino_bridge": 57600}
 SERVERS = ("socket", "rfc2217")
+Part = Literal["left_motor", "right_motor", "left_encoder", "right_encoder"]
 _RIGHT = "a device as /dev/ttyACM0, socket://HOST:PORT or rfc2217://HOST:PORT"
 
 
@@ -41,6 +42,13 @@ class LinkSection(Section):
         None, description="tapreach only; left out, the firmware keeps the gains it was built with"
     )
 
+    reversed: tuple[Part, ...] = Field(
+        (),
+        description="tapreach only; parts that are wired the other way round, which the board makes up for: "
+        "a motor that turns back when told to go forward, an encoder that counts down when its wheel goes "
+        "forward. `tapreach doctor --teach motors` finds and writes them",
+    )
+
     @property
     def baud_rate(self) -> int:
         """Bits per second on the wire."""
@@ -67,8 +75,18 @@ class LinkSection(Section):
             raise ValueError(f"is not an address: give {_RIGHT}")
         return address
 
+    @field_validator("reversed")
+    @classmethod
+    def _names_each_part_once(cls, parts: tuple[Part, ...]) -> tuple[Part, ...]:
+        twice = sorted({part for part in parts if parts.count(part) > 1})
+        if twice:
+            raise ValueError(f"names {', '.join(twice)} twice")
+        return parts
+
     @model_validator(mode="after")
-    def _gains_have_a_taker(self) -> Self:
+    def _board_takes_what_is_set(self) -> Self:
         if self.protocol == "ros_arduino_bridge" and self.wheel_control is not None:
             raise ValueError("wheel_control is for protocol 'tapreach': leave it out here")
+        if self.protocol == "ros_arduino_bridge" and self.reversed:
+            raise ValueError("reversed is for protocol 'tapreach': swap the wires, or tell that firmware")
         return self

@@ -7,7 +7,18 @@ import pytest
 from tests.drivers.arduino.memory import clocked_robot
 
 from tapreach.drivers.arduino.frame_reader import encode
-from tapreach.drivers.arduino.wire import Ack, Drive, Fault, Move, Result, ServoLimits, State, Stop
+from tapreach.drivers.arduino.wire import (
+    Ack,
+    Drive,
+    Fault,
+    Move,
+    Result,
+    Reversed,
+    ServoLimits,
+    State,
+    Stop,
+    Wiring,
+)
 from tapreach.errors import DriverError, LinkLost
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.clock import MS, SECOND
@@ -54,6 +65,7 @@ def test_set_up_tells_the_board_its_servos_before_anything_moves():
         limits = [m for m in robot.board.asked if isinstance(m, ServoLimits)]
         assert [m.index for m in limits] == [0, 1, 2, 3]
         assert all(m.low_us <= m.rest_us <= m.high_us for m in limits)
+        assert robot.board.asked.index(Wiring(Reversed(0))) < robot.board.asked.index(limits[0])
 
     play(scenario)
 

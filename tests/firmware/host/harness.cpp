@@ -21,6 +21,7 @@ struct World {
   uint64_t off_since_us;
   uint16_t pulses[4], battery_mv, illegal;
   bool is_stopped, is_held, has_led;
+  bool motor_is_reversed[2], encoder_is_reversed[2];
   uint8_t out[65536];
   uint32_t out_count;
   uint64_t pushes;  // periods in which a motor had PWM
@@ -50,7 +51,10 @@ void set_motors(int16_t left, int16_t right) {
   if (left || right) world.pushes++;
 }
 void read_ticks(int32_t ticks[2]) {
-  for (int i = 0; i < 2; i++) ticks[i] = int32_t(int64_t(floor(world.motors[i].angle)));
+  for (int i = 0; i < 2; i++) {
+    const double angle = world.encoder_is_reversed[i] ? -world.motors[i].angle : world.motors[i].angle;
+    ticks[i] = int32_t(int64_t(floor(angle)));
+  }
 }
 uint16_t illegal_steps() { return world.illegal; }
 void set_pulse(uint8_t servo, uint16_t us) { world.pulses[servo] = us; }
@@ -87,7 +91,10 @@ void boot(uint64_t at_us, uint8_t reset_cause) {
 void run(uint64_t us) {
   for (const uint64_t end = world.now_us + us; world.now_us < end;) {
     world.now_us += STEP_US;
-    for (int i = 0; i < 2; i++) step_motor(world.motors[i], world.pwm[i], STEP_US / 1e6);
+    for (int i = 0; i < 2; i++) {
+      const int pwm = world.motor_is_reversed[i] ? -world.pwm[i] : world.pwm[i];
+      step_motor(world.motors[i], pwm, STEP_US / 1e6);
+    }
     core->poll();
   }
 }
@@ -113,6 +120,13 @@ void set_angle(int side, double ticks) { world.motors[side].angle = ticks; }
 int pulse(int servo) { return world.pulses[servo]; }
 void set_battery(int mv) { world.battery_mv = uint16_t(mv); }
 void set_stop(int is_pulled) { world.is_stopped = is_pulled; }
+// Bits as of Reversed.
+void wire_up(int reversed) {
+  for (int i = 0; i < 2; i++) {
+    world.motor_is_reversed[i] = reversed >> i & 1;
+    world.encoder_is_reversed[i] = reversed >> (2 + i) & 1;
+  }
+}
 void hold_wheels(int is_held) { world.is_held = is_held; }
 void add_illegal(int count) { world.illegal = uint16_t(world.illegal + count); }
 uint32_t bad_frames() { return core->bad_frames(); }

@@ -44,7 +44,9 @@ async def _count(visit: BoardVisit, person: Person, side: str) -> float:
     if abs(per_turn) < FEWEST:
         raise InputError(f"the {side} encoder counted {ticks} ticks: check its supply and its cable")
     if per_turn < 0:
-        raise InputError(f"the {side} encoder counted back ({ticks} ticks): swap its A and B, then again")
+        raise InputError(
+            f"the {side} encoder counted back ({ticks} ticks): hold the lesson of the motors first"
+        )
     person.tell(f"{ticks} ticks: {per_turn:g} a turn.")
     return per_turn
 

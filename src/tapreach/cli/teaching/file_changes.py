@@ -13,7 +13,7 @@ from tapreach.resources import resource_path
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.toml_file import parse_validated
 
-Changes = Mapping[tuple[str, ...], bool | int | float]
+Changes = Mapping[tuple[str, ...], bool | int | float | list[str]]
 """Path of each key and its new value."""
 
 

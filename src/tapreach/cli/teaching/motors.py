@@ -3,15 +3,22 @@
 The wheels are driven without feedback: an encoder the wrong way round would make a speed control run away.
 """
 
+from dataclasses import dataclass, field
+from typing import Literal
+
 from tapreach.cli.teaching.person import Person
 from tapreach.drivers.arduino.visit import BoardVisit
 from tapreach.drivers.arduino.wire import Drive, Gains, Stop
+from tapreach.drivers.arduino.wiring import turned
 from tapreach.errors import DriverError, LinkLost
 from tapreach.robot.clock import MS, SECOND
-from tapreach.robot.link_section import LinkSection
+from tapreach.robot.link_section import LinkSection, Part
 
-SIDES = ("left", "right")
-OTHER = {"left": "right", "right": "left"}
+Side = Literal["left", "right"]
+SIDES: tuple[Side, ...] = ("left", "right")
+OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
+MOTOR: dict[Side, Part] = {"left": "left_motor", "right": "right_motor"}
+ENCODER: dict[Side, Part] = {"left": "left_encoder", "right": "right_encoder"}
 SPEED, ACCELERATION, PWM = 300, 600, 110
 """[ticks/s], [ticks/s²] and the PWM of 255 that this speed stands for while there is no feedback."""
 SPIN_NS, EVERY_NS, REST_NS = 1 * SECOND, 50 * MS, 500 * MS
@@ -21,8 +28,22 @@ FIRMWARE_GAINS = Gains(20, 200, 0, 20, 4000, 8000)
 WITHOUT_FEEDBACK = Gains(0, 0, 0, round(256 * PWM / SPEED), SPEED, ACCELERATION)
 
 
-async def try_motors(visit: BoardVisit, person: Person, link: LinkSection) -> list[str]:
-    """Turn each wheel for a second and return what has to be wired otherwise; empty where all is right.
+@dataclass(frozen=True, slots=True)
+class MotorFindings:
+    """What has to be wired otherwise, and which parts the board is to turn round by the robot file."""
+
+    to_wire: tuple[str, ...]
+    reversed: tuple[Part, ...]
+
+
+@dataclass
+class _Seen:
+    to_wire: list[str] = field(default_factory=list)
+    wrong: list[Part] = field(default_factory=list)
+
+
+async def try_motors(visit: BoardVisit, person: Person, link: LinkSection) -> MotorFindings:
+    """Turn each wheel for a second and return what came of it; the board has been told link.reversed.
 
     Raises TeachingStopped, LinkLost, DriverError.
     """
@@ -30,39 +51,46 @@ async def try_motors(visit: BoardVisit, person: Person, link: LinkSection) -> li
     await person.ask("Are both wheels off the ground, and free?", ("yes",))
     await visit.require(WITHOUT_FEEDBACK)
     try:
-        faults: list[str] = []
+        seen = _Seen()
         for side in SIDES:
-            faults += await _test_side(visit, person, side)
-        return faults
+            await _test_side(visit, person, side, seen)
+        return MotorFindings(tuple(seen.to_wire), turned(link.reversed, tuple(seen.wrong)))
     finally:
         await _give_gains_back(visit, person, link)
 
 
-async def _test_side(visit: BoardVisit, person: Person, side: str) -> list[str]:
+async def _test_side(visit: BoardVisit, person: Person, side: Side, seen: _Seen) -> None:
     await person.ask(f"\nThe {side} wheel now?", ("yes",))
     ticks = await _spin(visit, side)
-    seen = await person.ask("Which wheel turned?", ("left", "right", "none"))
-    if seen == "none":
-        return [f"{side} motor: no motion; check its supply, its enable pin and its cable"]
-    faults = []
-    if seen != side:
-        faults.append(f"the {seen} wheel turns when the {side} one should: swap the two motors at the bridge")
+    told = await person.ask("Which wheel turned?", ("left", "right", "none"))
+    if told == "none":
+        seen.to_wire.append(f"{side} motor: no motion; check its supply, its enable pin and its cable")
+        return
+    turning: Side = "left" if told == "left" else "right"
+    if turning != side:
+        seen.to_wire.append(
+            f"the {turning} wheel turns when the {side} one should: swap the two motors at the bridge"
+        )
     way = await person.ask("Did it turn forward or back?", ("forward", "back"))
     if way == "back":
-        faults.append(f"{seen} motor turns back: swap its two wires at the bridge")
-    return faults + _encoder_faults(seen, 1 if way == "forward" else -1, ticks)
+        seen.wrong.append(MOTOR[turning])
+    _judge_encoder(turning, 1 if way == "forward" else -1, ticks, seen)
 
 
-def _encoder_faults(seen: str, sign: int, ticks: dict[str, int]) -> list[str]:
-    counted = sign * ticks[seen]
-    if abs(counted) < FEW_TICKS:
-        if abs(ticks[OTHER[seen]]) >= FEW_TICKS:
-            return [f"the {OTHER[seen]} encoder counts the {seen} wheel: swap the two encoders at the board"]
-        return [f"{seen} encoder counts nothing: check its supply and its cable"]
-    return [] if counted > 0 else [f"{seen} encoder counts back: swap its A and B"]
+def _judge_encoder(turning: Side, sign: int, ticks: dict[Side, int], seen: _Seen) -> None:
+    counted = sign * ticks[turning]
+    if abs(counted) >= FEW_TICKS:
+        if counted < 0:
+            seen.wrong.append(ENCODER[turning])
+    elif abs(ticks[OTHER[turning]]) >= FEW_TICKS:
+        seen.to_wire.append(
+            f"the {OTHER[turning]} encoder counts the {turning} wheel: swap the two encoders at the board"
+        )
+    else:
+        seen.to_wire.append(f"{turning} encoder counts nothing: check its supply and its cable")
 
 
-async def _spin(visit: BoardVisit, side: str) -> dict[str, int]:
+async def _spin(visit: BoardVisit, side: Side) -> dict[Side, int]:
     """Turn one wheel and return the ticks of both."""
     await visit.require(Drive(0, 0, visit.session.at_ms))
     before = _ticks(visit)
@@ -76,7 +104,7 @@ async def _spin(visit: BoardVisit, side: str) -> dict[str, int]:
     return {each: _difference(after[each], before[each]) for each in SIDES}
 
 
-def _ticks(visit: BoardVisit) -> dict[str, int]:
+def _ticks(visit: BoardVisit) -> dict[Side, int]:
     told = visit.telemetry
     if told is None:
         raise LinkLost(visit.reason)

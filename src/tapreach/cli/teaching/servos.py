@@ -47,7 +47,7 @@ async def teach_servos(visit: BoardVisit, person: Person, arm: ArmSection) -> Ch
         "Each servo goes to its rest pulse first, at once: the arm must be free all around.\n"
         "Then it goes by small steps that you ask for: - and + are 10 µs, -- and ++ 50 µs."
     )
-    changes: dict[tuple[str, ...], bool | int | float] = {}
+    changes: dict[tuple[str, ...], bool | int | float | list[str]] = {}
     for joint in JOINTS:
         question = f"\nServo {'ABCD'[joint.index]}, {joint.name}: rest is {rests[joint.index]} µs. Move it?"
         if await person.ask(question, ("yes", "skip")) == "yes":

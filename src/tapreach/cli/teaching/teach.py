@@ -5,11 +5,12 @@ from pathlib import Path
 
 from tapreach.cli.teaching.encoders import count_encoders
 from tapreach.cli.teaching.file_changes import Changes, changed_text, difference, require_own_file, write_text
-from tapreach.cli.teaching.motors import try_motors
+from tapreach.cli.teaching.motors import MotorFindings, try_motors
 from tapreach.cli.teaching.person import Person
 from tapreach.cli.teaching.servos import teach_servos
 from tapreach.drivers.arduino.ports import OpenPort, open_port
 from tapreach.drivers.arduino.visit import BoardVisit
+from tapreach.drivers.arduino.wiring import wiring_of
 from tapreach.errors import InputError, LinkLost
 from tapreach.robot.clock import Clock
 from tapreach.robot.config import RobotDescription, load_robot
@@ -35,11 +36,12 @@ async def teach(
     require_own_file(path)
     description = load_robot(path)
     link = _own_link(description)
-    async with BoardVisit(link, clock, (), open_port) as visit:
+    async with BoardVisit(link, clock, (wiring_of(link.reversed),), open_port) as visit:
         if not await visit.opened():
             raise LinkLost(visit.reason)
         if lesson is Lesson.MOTORS:
-            return _told(person, await try_motors(visit, person, link))
+            findings = await try_motors(visit, person, link)
+            return await _take_findings(person, path, link, findings)
         if lesson is Lesson.SERVOS:
             changes = await teach_servos(visit, person, description.arm)
         else:
@@ -54,24 +56,31 @@ def _own_link(description: RobotDescription) -> LinkSection:
     return description.link
 
 
-def _told(person: Person, faults: list[str]) -> bool:
-    if not faults:
+async def _take_findings(person: Person, path: Path, link: LinkSection, findings: MotorFindings) -> bool:
+    if findings.to_wire:
+        person.tell("\nSwitch it off, then:")
+        for fault in findings.to_wire:
+            person.tell(f"  - {fault}")
+        person.tell("and test again.")
+        return False
+    if set(findings.reversed) == set(link.reversed):
         person.tell("\nMotors and encoders are right.")
         return True
-    person.tell("\nSwitch it off, then:")
-    for fault in faults:
-        person.tell(f"  - {fault}")
-    person.tell("and test again.")
-    return False
+    person.tell("\nThe board can make up for what is the other way round:")
+    is_written = await _write(person, path, {("link", "reversed"): list(findings.reversed)})
+    person.tell("Test again: all is right then." if is_written else "Swap wires then, and test again.")
+    return is_written
 
 
-async def _write(person: Person, path: Path, changes: Changes) -> None:
+async def _write(person: Person, path: Path, changes: Changes) -> bool:
     before = path.read_text(encoding="utf-8")
     after = changed_text(before, changes, str(path))
     if after == before:
         person.tell("\nThe robot file says so already.")
-        return
+        return True
     person.tell("\n" + difference(before, after, path.name))
-    if await person.ask("Write this?", ("yes", "no")) == "yes":
-        write_text(path, after)
-        person.tell(f"Written to {path}.")
+    if await person.ask("Write this?", ("yes", "no")) == "no":
+        return False
+    write_text(path, after)
+    person.tell(f"Written to {path}.")
+    return True

@@ -18,6 +18,7 @@ from tapreach.drivers.arduino.wire import (
     ToFirmware,
     Welcome,
 )
+from tapreach.drivers.arduino.wiring import wiring_of
 from tapreach.errors import LinkLost
 from tapreach.robot.clock import SECOND, Clock
 from tapreach.robot.config import RobotDescription
@@ -122,7 +123,10 @@ class FramedBoard:
 
     def _setup(self) -> Sequence[ToFirmware]:
         # A reset's own latched fault was said as the reason of the restart; others are said first.
-        return (*self.arm.limits(), *self._gains(), Clear(OF_RESETS))
+        # The wiring always: the board may still have that of another robot file.
+        link = self._description.link
+        wiring = wiring_of(link.reversed if link else ())
+        return (wiring, *self.arm.limits(), *self._gains(), Clear(OF_RESETS))
 
     def _gains(self) -> tuple[Gains, ...]:
         control = self._description.link.wheel_control if self._description.link else None

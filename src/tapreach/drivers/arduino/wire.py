@@ -99,6 +99,15 @@ class ResetCause(IntFlag):
     WATCHDOG = 1 << 3  # the program hung
 
 
+class Reversed(IntFlag):
+    """What is wired the other way round, as a wheel that goes forward shows it."""
+
+    LEFT_MOTOR = 1 << 0  # turns back
+    RIGHT_MOTOR = 1 << 1  # turns back
+    LEFT_ENCODER = 1 << 2  # counts down
+    RIGHT_ENCODER = 1 << 3  # counts down
+
+
 @dataclass(frozen=True)
 class Hello:
     """Opens a framed session. Answered by Welcome."""
@@ -320,6 +329,26 @@ class Ping:
 
 
 @dataclass(frozen=True)
+class Wiring:
+    """Turns motors and encoders round until the next reset; only while the wheels are off or stand."""
+
+    TYPE: ClassVar[int] = 0x0B
+    FORMAT: ClassVar[Struct] = Struct("<B")
+
+    reversed: Reversed  # others are as wired; without Quadrature an encoder goes with its motor
+
+    def pack(self) -> bytes:
+        """Return the body."""
+        return self.FORMAT.pack(self.reversed)
+
+    @classmethod
+    def unpack(cls, body: bytes) -> "Wiring":
+        """Return the message of a body as long as FORMAT. ValueError: unknown value."""
+        v = cls.FORMAT.unpack(body)
+        return cls(Reversed(v[0]))
+
+
+@dataclass(frozen=True)
 class Ack:
     """Answer to every command but Hello and Ping."""
 
@@ -474,7 +503,7 @@ class Moved:
         return cls(v[0], MoveResult(v[1]), v[2], v[3])
 
 
-ToFirmware = Hello | Drive | Move | Keep | Stop | Servos | Clear | Gains | ServoLimits | Ping
+ToFirmware = Hello | Drive | Move | Keep | Stop | Servos | Clear | Gains | ServoLimits | Ping | Wiring
 FromFirmware = Ack | Welcome | Telemetry | Pong | Moved
 Message = ToFirmware | FromFirmware
 MESSAGES: dict[int, type[Message]] = {
@@ -488,6 +517,7 @@ MESSAGES: dict[int, type[Message]] = {
     Gains.TYPE: Gains,
     ServoLimits.TYPE: ServoLimits,
     Ping.TYPE: Ping,
+    Wiring.TYPE: Wiring,
     Ack.TYPE: Ack,
     Welcome.TYPE: Welcome,
     Telemetry.TYPE: Telemetry,

@@ -1,0 +1,24 @@
+"""Which way round motors and encoders are wired, as the robot file says it and as the board is told."""
+
+from tapreach.drivers.arduino.wire import Reversed, Wiring
+from tapreach.robot.link_section import Part
+
+PARTS: dict[Part, Reversed] = {
+    "left_motor": Reversed.LEFT_MOTOR,
+    "right_motor": Reversed.RIGHT_MOTOR,
+    "left_encoder": Reversed.LEFT_ENCODER,
+    "right_encoder": Reversed.RIGHT_ENCODER,
+}
+
+
+def wiring_of(parts: tuple[Part, ...]) -> Wiring:
+    """Return what makes the board turn these parts round, and no others."""
+    told = Reversed(0)
+    for part in parts:
+        told |= PARTS[part]
+    return Wiring(told)
+
+
+def turned(parts: tuple[Part, ...], more: tuple[Part, ...]) -> tuple[Part, ...]:
+    """Return the parts that are the other way round where `more` turned out wrong with `parts` reversed."""
+    return tuple(part for part in PARTS if (part in parts) != (part in more))
