@@ -10,6 +10,7 @@ from tapreach.estimation.point_estimate import PointEstimate, Status
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.geometry.ray import Ray
 from tapreach.robot.clock import MS
+from tapreach.robot.held_settings import settings_held
 from tapreach.tasks.aiming import aimed
 from tapreach.tasks.camera_delay import is_worth_measuring, know_delay
 from tapreach.tasks.candidate_moves import SHORTEST_ADVANCE
@@ -62,6 +63,10 @@ class LocateTask:
 
     async def run(self, context: TaskContext) -> str:
         """See Task. Raises FrameError, InputError, TargetLost, MotionInterrupted, LinkLost."""
+        with settings_held(context.robot.frames):
+            return await self._locate(context)
+
+    async def _locate(self, context: TaskContext) -> str:
         tap = await aimed(context, self._tap)
         if is_worth_measuring(context):
             await know_delay(context)

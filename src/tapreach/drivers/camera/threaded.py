@@ -38,6 +38,7 @@ class ThreadedCamera:
     ) -> None:
         self._make_stream, self._size, self._clock = make_stream, size, clock
         self._hold = hold or Hold()
+        self._holders: set[object] = set()
         self._frames, self._statuses = Listeners(), Listeners()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread: threading.Thread | None = None
@@ -66,12 +67,17 @@ class ThreadedCamera:
         """Hear whenever pictures begin or cease to come, and why."""
         return self._statuses.subscribe(listener)
 
-    def hold_settings(self, is_wanted: bool) -> None:
-        """Keep exposure, gain and white balance as they are, or let them go; done before the next picture.
+    def hold_settings(self) -> Callable[[], None]:
+        """See HoldsSettings; a camera whose settings cannot be reached (all but V4L2) goes on as it does."""
+        holder = object()
+        self._holders.add(holder)
+        self._hold.is_wanted = True
 
-        For cameras whose settings can be reached (V4L2); others go on as they do.
-        """
-        self._hold.is_wanted = is_wanted
+        def release() -> None:
+            self._holders.discard(holder)
+            self._hold.is_wanted = bool(self._holders)
+
+        return release
 
     async def connect(self, patience_s: float = OPEN_S + STALL_S) -> None:
         """Open the camera and wait for its first picture.

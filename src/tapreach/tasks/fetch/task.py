@@ -5,6 +5,7 @@ from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import replace
 
 from tapreach.errors import TapreachError
+from tapreach.robot.held_settings import settings_held
 from tapreach.tasks.fetch.approaching import approach, last_look
 from tapreach.tasks.fetch.arm_watch import ArmWatch
 from tapreach.tasks.fetch.arm_zero import ArmZero
@@ -69,7 +70,8 @@ class FetchTask:
         obstacles = [each for each in map(Obstacle.of_target, self._others) if each is not None]
         run = FetchRun(context, self.memory, obstacles, ArmWatch(context.robot.arm), self.ways)
         try:
-            return await self._carry_out(run)
+            with settings_held(context.robot.frames):
+                return await self._carry_out(run)
         finally:
             if run.memory.phase in (Phase.LOOK, Phase.APPROACH, Phase.LAST_LOOK):
                 keep_what_is_known(run)
