@@ -45,6 +45,7 @@ class Camera(threading.Thread):
     def run(self) -> None:
         self._serving.start()
         renderer = Renderer(self._plant.world.model, *self._size)
+        renderer.shadows = False  # they cost as much as all the rest
         due = time.monotonic()
         while not self._ending.is_set():
             with self._bridge.lock:
