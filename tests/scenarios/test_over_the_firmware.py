@@ -49,7 +49,18 @@ def live(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
         tapreach_run(folder, "--robot", str(robot.robot_file)) as run,
         operating(browser, run.address, "room") as person,
     ):
+        settle(robot)
         yield person, run, robot
+
+
+def settle(robot: LiveProcess) -> None:
+    """Wait until the board's time goes with ours: starting all this keeps a small machine busy."""
+    end_s = time.monotonic() + 20.0
+    while time.monotonic() < end_s:
+        robot.look()
+        time.sleep(1.0)
+        if robot.look().worst_lag_s < MOST_LAG_S:
+            return
 
 
 def test_one_tap_on_the_page_locates_the_red_can(live: Live) -> None:
