@@ -49,9 +49,11 @@ function linkNotice({ link, welcome }, isConnected) {
 }
 
 /** @param {import("../net/situation.js").Facts} facts @returns {Notice | null} */
-function robotNotice({ state, frameId }) {
+function robotNotice({ state, frameId, isFrozen, isPaused, pictureAgeMs }) {
   if (state?.health === "lost") {
-    return { kind: "lost", title: "Robot lost", text: state.health_reason, canRetry: false };
+    const isOld = frameId !== null && isFrozen && !isPaused;
+    const title = isOld ? frozenTitle(pictureAgeMs) : "Robot lost";
+    return { kind: "lost", title, text: state.health_reason, canRetry: false };
   }
   if (frameId !== null) return null;
   const text = state?.health_reason || "The camera has not sent its first picture yet.";
@@ -61,6 +63,11 @@ function robotNotice({ state, frameId }) {
 /** @param {import("../net/situation.js").Facts} facts @returns {Notice | null} */
 function frozenNotice({ isFrozen, isPaused, pictureAgeMs }) {
   if (!isFrozen || isPaused) return null;
-  const title = `FROZEN ${number((pictureAgeMs ?? 0) / 1000, 1)} s`;
-  return { kind: "frozen", title, text: "This picture is old. Driving waits until it moves again.", canRetry: false };
+  const text = "This picture is old. Driving waits until it moves again.";
+  return { kind: "frozen", title: frozenTitle(pictureAgeMs), text, canRetry: false };
+}
+
+/** @param {number | null} ageMs @returns {string} */
+function frozenTitle(ageMs) {
+  return `FROZEN ${number((ageMs ?? 0) / 1000, 1)} s`;
 }
