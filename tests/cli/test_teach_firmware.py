@@ -87,7 +87,7 @@ def at_terminal(typed, work):
     shown = io.StringIO()
     with os.fdopen(slave, "r") as source, os.fdopen(master, "wb", buffering=0) as keyboard:
         keyboard.write(typed)
-        return asyncio.run(work(Terminal(source, shown))), shown.getvalue()
+        return asyncio.run(work(Terminal("--teach", source, shown))), shown.getvalue()
 
 
 def test_terminal_takes_one_of_the_answers_and_says_which_there_are():

@@ -2,9 +2,11 @@
 
 import asyncio
 import json
+from collections.abc import Coroutine
 from dataclasses import asdict
+from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
@@ -14,6 +16,7 @@ from tapreach.cli.checkup.examine import examine
 from tapreach.cli.robot_file import find_robot_file
 from tapreach.cli.teaching.person import TeachingStopped, Terminal
 from tapreach.cli.teaching.teach import Lesson, teach
+from tapreach.errors import InputError
 from tapreach.robot.clock import MonotonicClock
 from tapreach.robot.config import load_robot
 
@@ -26,6 +29,12 @@ CLOSING = {
 }
 
 
+class Measure(StrEnum):
+    """What the robot measures by itself."""
+
+    DELAY = "delay"
+
+
 def doctor(
     robot: Annotated[str, typer.Option(help="a shipped robot or the path of a robot file")],
     as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
@@ -33,17 +42,27 @@ def doctor(
     lesson: Annotated[
         Lesson | None, typer.Option("--teach", help="instead: small moves, step by step, as you say")
     ] = None,
+    measure: Annotated[
+        Measure | None, typer.Option("--measure", help="instead: how late the camera is; the robot turns")
+    ] = None,
 ) -> None:
     """Check camera, link, firmware, battery, servos, Wi-Fi and disk; nothing of the robot moves.
 
     With --teach it asks and moves, wheels off the ground: servo limits and directions, which way motors turn
-    and encoders count, ticks of a turn. What came of it goes into the robot file, comments untouched.
+    and encoders count, ticks of a turn. With --measure delay the robot turns to and fro on the floor and
+    watches. What came of it goes into the robot file, comments untouched.
 
     Exit code 0 when nothing fails (warnings allowed), 1 when something does, 2 for what cannot be used.
     """
+    if lesson is not None and measure is not None:
+        raise InputError("--teach and --measure are two things: one after the other")
     if lesson is not None:
-        _teach(lesson, find_robot_file(robot))
-        return
+        _hold(teach(lesson, find_robot_file(robot), Terminal(), MonotonicClock()))
+    if measure is not None:
+        # Loaded where it is needed only: it brings the whole server.
+        from tapreach.cli.teaching.delay import measure_delay
+
+        _hold(measure_delay(find_robot_file(robot), Terminal("--measure"), MonotonicClock()))
     description = load_robot(find_robot_file(robot))
     checks = asyncio.run(examine(description, MonotonicClock(), captures))
     if as_json:
@@ -53,9 +72,9 @@ def doctor(
     raise typer.Exit(NOT_WELL if worst(checks) is Verdict.FAIL else 0)
 
 
-def _teach(lesson: Lesson, path: Path) -> None:
+def _hold(lesson: Coroutine[Any, Any, bool]) -> NoReturn:
     try:
-        is_right = asyncio.run(teach(lesson, path, Terminal(), MonotonicClock()))
+        is_right = asyncio.run(lesson)
     except TeachingStopped as stopped:
         typer.echo(stopped, err=True)
         raise typer.Exit(NOT_WELL) from None

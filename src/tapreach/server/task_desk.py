@@ -14,6 +14,7 @@ from tapreach.robot.clock import SECOND
 from tapreach.robot.messages import Frame
 from tapreach.server.fetch_desk import FetchDesk
 from tapreach.server.messages import GuideView, TaskView
+from tapreach.tasks.delay_task import DelayTask
 from tapreach.tasks.fetch.fetch_state import Mode, Verb
 from tapreach.tasks.fetch.known_target import tap_on
 from tapreach.tasks.floor_guess import floor_guess
@@ -122,6 +123,13 @@ class TaskDesk:
         others = [each for each in self._station.targets.known() if each.target_id != target_id]
         self._fetch.start(tap, target_id, mode, others, session_id)
         self._located_target_id = target_id
+
+    async def measure_delay(self, session_id: int) -> TaskProgress | None:
+        """Measure how late the camera is, and return how that ended. Raises InputError."""
+        self._require_motion(session_id)
+        self._runner.start(DelayTask(), session_id)
+        await self._runner.wait()
+        return self._runner.progress
 
     def confirm_fetch(self) -> None:
         """The operator says yes. Raises InputError when nothing waits for it."""

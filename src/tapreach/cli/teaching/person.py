@@ -29,10 +29,14 @@ class Person(Protocol):
 class Terminal:
     """A person at a terminal. Waiting for a line does not hold up the session with the board."""
 
-    def __init__(self, source: TextIO | None = None, target: TextIO | None = None) -> None:
+    def __init__(
+        self, option: str = "--teach", source: TextIO | None = None, target: TextIO | None = None
+    ) -> None:
         self._source, self._target = source or sys.stdin, target or sys.stdout
         if not self._source.isatty():
-            raise InputError("--teach moves the robot and asks what is seen: it needs a person at a terminal")
+            raise InputError(
+                f"{option} moves the robot and asks what is seen: it needs a person at a terminal"
+            )
 
     def tell(self, text: str) -> None:
         """See Person."""

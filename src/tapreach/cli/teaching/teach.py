@@ -4,8 +4,9 @@ from enum import StrEnum
 from pathlib import Path
 
 from tapreach.cli.teaching.encoders import count_encoders
-from tapreach.cli.teaching.file_changes import Changes, changed_text, difference, require_own_file, write_text
+from tapreach.cli.teaching.file_changes import require_own_file
 from tapreach.cli.teaching.motors import MotorFindings, try_motors
+from tapreach.cli.teaching.offer import offer_changes
 from tapreach.cli.teaching.person import Person
 from tapreach.cli.teaching.servos import teach_servos
 from tapreach.drivers.arduino.ports import OpenPort, open_port
@@ -46,7 +47,7 @@ async def teach(
             changes = await teach_servos(visit, person, description.arm)
         else:
             changes = await count_encoders(visit, person)
-        await _write(person, path, changes)
+        await offer_changes(person, path, changes)
     return True
 
 
@@ -67,20 +68,6 @@ async def _take_findings(person: Person, path: Path, link: LinkSection, findings
         person.tell("\nMotors and encoders are right.")
         return True
     person.tell("\nThe board can make up for what is the other way round:")
-    is_written = await _write(person, path, {("link", "reversed"): list(findings.reversed)})
+    is_written = await offer_changes(person, path, {("link", "reversed"): list(findings.reversed)})
     person.tell("Test again: all is right then." if is_written else "Swap wires then, and test again.")
     return is_written
-
-
-async def _write(person: Person, path: Path, changes: Changes) -> bool:
-    before = path.read_text(encoding="utf-8")
-    after = changed_text(before, changes, str(path))
-    if after == before:
-        person.tell("\nThe robot file says so already.")
-        return True
-    person.tell("\n" + difference(before, after, path.name))
-    if await person.ask("Write this?", ("yes", "no")) == "no":
-        return False
-    write_text(path, after)
-    person.tell(f"Written to {path}.")
-    return True
