@@ -31,7 +31,7 @@ class TappedSpot:
 
 
 def colours_around(picture: Color, spot: Pixel, half: float) -> FloatArray:
-    """Return the shares (bins,) of the colours so far around a pixel [px], 1 in all."""
+    """Return the shares (bins,) of the colours so far around a pixel [px], about 1 in all."""
     half = max(half, _LEAST_HALF)
     around = PixelBox(spot.u - half, spot.v - half, spot.u + half, spot.v + half)
     return shares_of(counts_of(cut_to(colour_bins(picture), around)), _ALIKE)

@@ -5,16 +5,10 @@ from contextlib import suppress
 from typing import Any
 
 from tests.drivers.arduino.peer import PeerBoard
-from tests.drivers.arduino.rig import description_for
+from tests.drivers.arduino.rig import DrawnCamera, description_for
 
-from tapreach.drivers.arduino.parts import NoCamera
 from tapreach.drivers.arduino.robot import ArduinoRobot
-from tapreach.drivers.fake_picture import FakePicture
-from tapreach.geometry.pixel import ImageSize
-from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.clock import MS, ManualClock
-from tapreach.robot.config import RobotDescription
-from tapreach.robot.messages import Frame
 
 STEP_NS = 5 * MS
 
@@ -33,37 +27,12 @@ class MemoryPort:
         self._board.write = lambda data: None
 
 
-class ClockedCamera(NoCamera):
-    """Tells the same drawn picture 20 times a second of the clock."""
-
-    def __init__(self, description: RobotDescription, clock: ManualClock) -> None:
-        super().__init__()
-        self._section, self._clock = description.camera, clock
-        self._task: asyncio.Task[None] | None = None
-
-    def start(self) -> None:
-        self._task = asyncio.create_task(self._run())
-
-    async def close(self) -> None:
-        if self._task is not None:
-            self._task.cancel()
-            await asyncio.wait([self._task])
-
-    async def _run(self) -> None:
-        jpeg = FakePicture(self._section).jpeg(PlanarPose(), "peer")
-        size = ImageSize(self._section.width, self._section.height)
-        for frame_id in range(1, 10**9):
-            now_ns = self._clock.now_ns()
-            self._listeners.tell(Frame(frame_id, now_ns, now_ns, size, jpeg))
-            await self._clock.sleep_until(now_ns + 50 * MS)
-
-
 class ClockedRobot(ArduinoRobot):
     """Brings its peer; `connect` turns the clock until it is connected."""
 
     def __init__(self, board: Any, clock: ManualClock, file: str = "rover-pi", **link: Any) -> None:
         description = description_for("/dev/peer", file, **link)
-        super().__init__(description, clock, ClockedCamera, self._open)
+        super().__init__(description, clock, DrawnCamera, self._open)
         self.board, self.clock = board, clock
         self.port: MemoryPort | None = None
         self.is_plugged = True

@@ -15,7 +15,7 @@ from tapreach.drivers.fake_picture import FakePicture
 from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.resources import resource_path
-from tapreach.robot.clock import MonotonicClock
+from tapreach.robot.clock import MS, Clock, MonotonicClock
 from tapreach.robot.config import RobotDescription, load_robot
 from tapreach.robot.messages import Frame
 
@@ -31,9 +31,9 @@ def description_for(address: str, file: str = "rover-pi", **link: Any) -> RobotD
 
 
 class DrawnCamera(NoCamera):
-    """Tells the same drawn picture 20 times a second."""
+    """Tells the same drawn picture 20 times a second of its clock."""
 
-    def __init__(self, description: RobotDescription, clock: MonotonicClock) -> None:
+    def __init__(self, description: RobotDescription, clock: Clock) -> None:
         super().__init__()
         self._section, self._clock = description.camera, clock
         self._task: asyncio.Task[None] | None = None
@@ -52,7 +52,7 @@ class DrawnCamera(NoCamera):
         for frame_id in range(1, 10**9):
             now_ns = self._clock.now_ns()
             self._listeners.tell(Frame(frame_id, now_ns, now_ns, size, jpeg))
-            await asyncio.sleep(0.05)
+            await self._clock.sleep_until(now_ns + 50 * MS)
 
 
 class PeeredRobot(ArduinoRobot):

@@ -12,6 +12,9 @@ from tapreach.tasks.fetch.run import FetchRun
 CLEAR = 0.03
 """The claw stays so far from what is known to stand there [m]: servos that are off bring it 2 cm aside."""
 
+WORTH_BACKING = 0.01
+"""A shorter way back [m] is not driven."""
+
 
 def lacking_room(run: FetchRun) -> float:
     """Return how far the robot should back off to look at its claw clear of what is known to stand around,

@@ -5,7 +5,7 @@ from dataclasses import replace
 from tapreach.robot.messages import ArmPose
 from tapreach.tasks.fetch.arm_zero import ArmZero
 from tapreach.tasks.fetch.by_colours import tap_by_colours
-from tapreach.tasks.fetch.claw_show_room import lacking_room
+from tapreach.tasks.fetch.claw_show_room import WORTH_BACKING, lacking_room
 from tapreach.tasks.fetch.held import Held, HeldVerdict, least_opening, look_whether_held, view_poses
 from tapreach.tasks.fetch.looking_again import frame_from_now_on
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -13,9 +13,6 @@ from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.thing import ThingSize
 from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.free_way import way_behind
-
-_WORTH_BACKING = 0.01
-"""A shorter way back [m] is not driven."""
 
 
 async def verify(run: FetchRun) -> Ended:
@@ -26,12 +23,12 @@ async def verify(run: FetchRun) -> Ended:
     counts as not held: it is looked for again. A claw that was never seen tells nothing at all.
     """
     back = min(lacking_room(run), way_behind(run.context.poses))
-    if back > _WORTH_BACKING:
+    if back > WORTH_BACKING:
         await run.context.pilot.advance(-back)
     lifted = await run.arm_watch.target()
     ended = await (_by_place(run) if run.memory.zero is None else _by_claw(run, run.memory.zero))
     await run.context.pilot.move_arm(replace(lifted, claw=(await run.arm_watch.target()).claw))
-    if back > _WORTH_BACKING and ended.outcome is Outcome.DONE:
+    if back > WORTH_BACKING and ended.outcome is Outcome.DONE:
         await run.context.pilot.advance(back)
     return ended
 

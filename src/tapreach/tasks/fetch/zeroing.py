@@ -8,14 +8,11 @@ from tapreach.tasks.fetch.approach import Leg
 from tapreach.tasks.fetch.approaching import drive
 from tapreach.tasks.fetch.arm_leading import ArmBlocked, fold
 from tapreach.tasks.fetch.arm_zero import zeroed_arm
-from tapreach.tasks.fetch.claw_show_room import lacking_room
+from tapreach.tasks.fetch.claw_show_room import WORTH_BACKING, lacking_room
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.follower import TargetLost
 from tapreach.tasks.free_way import way_behind
-
-_WORTH_BACKING = 0.01
-"""A shorter way back [m] is not driven."""
 
 
 async def zero(run: FetchRun) -> Ended:
@@ -26,7 +23,7 @@ async def zero(run: FetchRun) -> Ended:
     if run.memory.zero is not None:
         return Ended(Outcome.DONE, "how the arm stands is known from before")
     back = min(lacking_room(run), way_behind(run.context.poses))
-    if back > _WORTH_BACKING:
+    if back > WORTH_BACKING:
         # What is lost on the way is missed, and looked for, by the phase that needs it.
         with suppress(TargetLost):
             await drive(run, Leg(PlanarStep(0.0, -back), 1.0, sees_thing=True))
