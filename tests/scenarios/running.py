@@ -31,6 +31,10 @@ class Running:
         return self.printed + rest
 
 
+LAST_WORDS = "Ctrl-C ends it."
+"""With them all is said: a signal sent before would cut it off."""
+
+
 @contextmanager
 def tapreach_run(captures: Path, *arguments: str) -> Iterator[Running]:
     """Start `tapreach run` on a free port and wait until it prints its address."""
@@ -54,7 +58,8 @@ def _read_address(process: subprocess.Popen[str]) -> tuple[str, str]:
     assert process.stdout is not None
     for line in process.stdout:
         printed += line
-        if found := re.search(r"http://\S+", line):
+        found = re.search(r"http://\S+", printed)
+        if found and LAST_WORDS in line:
             return printed, found.group()
     raise AssertionError(f"tapreach run ended without an address; it printed:\n{printed}")
 
