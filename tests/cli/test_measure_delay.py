@@ -12,7 +12,6 @@ from typer.testing import CliRunner
 
 from tapreach.cli.main import app
 from tapreach.cli.teaching.delay import changes_of, measure_delay
-from tapreach.cli.teaching.person import TeachingStopped
 from tapreach.drivers.arduino.parts import NoCamera
 from tapreach.drivers.arduino.robot import ArduinoRobot
 from tapreach.drivers.fake_picture import FakePicture
@@ -22,6 +21,7 @@ from tapreach.estimation.camera_delay import CameraDelay
 from tapreach.robot.clock import MS
 from tapreach.robot.config import load_robot
 from tapreach.robot.messages import Frame
+from tapreach.tasks.teaching.person import TeachingStopped
 
 PERIOD_NS = 60 * MS
 

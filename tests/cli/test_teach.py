@@ -10,11 +10,10 @@ import pytest
 from tests.cli.visited_board import play_clocked
 from tests.drivers.arduino.peer import PeerBoard
 
-from tapreach.cli.teaching.file_changes import changed_text, write_text
-from tapreach.cli.teaching.motors import FIRMWARE_GAINS, PWM, SPEED, WITHOUT_FEEDBACK
-from tapreach.cli.teaching.person import TeachingStopped
-from tapreach.cli.teaching.servos import SPEED_US_PER_S, STEPS_US
-from tapreach.cli.teaching.teach import Lesson, teach
+from tapreach.cli.teaching.teach import teach
+from tapreach.drivers.arduino.bench import PWM, SPEED, WITHOUT_FEEDBACK
+from tapreach.drivers.arduino.servo_way import SPEED_US_PER_S
+from tapreach.drivers.arduino.wheels import FIRMWARE_GAINS
 from tapreach.drivers.arduino.wire import (
     Drive,
     Fault,
@@ -30,6 +29,10 @@ from tapreach.drivers.arduino.wire import (
 from tapreach.errors import ConfigError, DriverError, InputError, LinkLost
 from tapreach.resources import resource_path
 from tapreach.robot.config import load_robot
+from tapreach.tasks.teaching.file_changes import changed_text, write_text
+from tapreach.tasks.teaching.lesson import Lesson
+from tapreach.tasks.teaching.person import TeachingStopped
+from tapreach.tasks.teaching.servos import STEPS_US
 
 SHIPPED = resource_path("robots") / "rover-pi.toml"
 CONTROL_H = Path(__file__).parents[2] / "firmware" / "tapreach" / "control.h"
@@ -43,6 +46,9 @@ class Scripted:
 
     def tell(self, text):
         self.told.append(text)
+
+    def show_change(self, difference):
+        self.told.append(difference)
 
     async def ask(self, question, answers):
         self.asked.append(question)

@@ -14,11 +14,13 @@ from typer.testing import CliRunner
 from tapreach.cli.checkup.board_check import check_board
 from tapreach.cli.checkup.check import Verdict
 from tapreach.cli.main import app
-from tapreach.cli.teaching.motors import PWM
-from tapreach.cli.teaching.person import TeachingStopped, Terminal
-from tapreach.cli.teaching.teach import Lesson, teach
+from tapreach.cli.teaching.person import Terminal
+from tapreach.cli.teaching.teach import teach
+from tapreach.drivers.arduino.bench import PWM
 from tapreach.errors import InputError
 from tapreach.robot.config import load_robot
+from tapreach.tasks.teaching.lesson import Lesson
+from tapreach.tasks.teaching.person import TeachingStopped
 
 needs_compiler = pytest.mark.skipif(not HAS_COMPILER, reason="needs g++ (Debian: apt-get install g++)")
 

@@ -8,13 +8,13 @@ export const PROTOCOL_VERSION = 1;
 /**
  * What the page may send.
  *
- * @typedef {Hello | Ping | Heartbeat | Drive | Stop | EmergencyStop | EmergencyReset | ArmStep | ArmGoto | Capture | LeaseRequest | LeaseRelease | LeaseAnswer | TapTarget | TargetClear | TaskCancel | GuideStart | GuideTap | GuideValue | GuideAct | GuideEnd | Fetch | FetchConfirm | FetchResume | FetchVerb} FromPage
+ * @typedef {Hello | Ping | Heartbeat | Drive | Stop | EmergencyStop | EmergencyReset | ArmStep | ArmGoto | Capture | LeaseRequest | LeaseRelease | LeaseAnswer | TapTarget | TargetClear | TaskCancel | GuideStart | GuideTap | GuideValue | GuideAct | GuideEnd | Fetch | FetchConfirm | FetchResume | FetchVerb | LessonStart | LessonAnswer | LessonEnd} FromPage
  */
 
 /**
  * What the server sends.
  *
- * @typedef {Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | FetchView | CapturesChanged} FromServer
+ * @typedef {Welcome | Pong | Ack | State | TaskView | MoveView | TargetView | TargetGone | GuideView | FetchView | LessonView | CapturesChanged} FromServer
  */
 
 /**
@@ -258,6 +258,33 @@ export const PROTOCOL_VERSION = 1;
  */
 
 /**
+ * Begin a lesson; what is running must have ended.
+ *
+ * @typedef {object} LessonStart
+ * @property {number} seq
+ * @property {"lesson_start"} type
+ * @property {"motors" | "encoders" | "servos"} lesson
+ */
+
+/**
+ * Answer the question that is being asked.
+ *
+ * @typedef {object} LessonAnswer
+ * @property {number} seq
+ * @property {"lesson_answer"} type
+ * @property {number} question_id of the question on the screen; an older one is refused
+ * @property {string} answer one of the question's answers
+ */
+
+/**
+ * Stop the lesson at once, or put away what is said of one that has ended.
+ *
+ * @typedef {object} LessonEnd
+ * @property {number} seq
+ * @property {"lesson_end"} type
+ */
+
+/**
  * Answer to hello.
  *
  * @typedef {object} Welcome
@@ -272,6 +299,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {number[]} steps_deg
  * @property {number} frozen_after_ms
  * @property {number} stale_after_ms
+ * @property {("motors" | "encoders" | "servos")[]} lessons what this robot can be taught
  */
 
 /**
@@ -413,6 +441,21 @@ export const PROTOCOL_VERSION = 1;
  * @property {string} stopped who or what stopped it
  * @property {string} condition how the robot stands after the stop
  * @property {("bring_back" | "put_down" | "hand_over" | "let_go")[]} verbs
+ */
+
+/**
+ * A lesson: what was said since the last answer, and what is asked now.
+ *
+ * @typedef {object} LessonView
+ * @property {"lesson"} type
+ * @property {"motors" | "encoders" | "servos" | null} lesson null: there is none
+ * @property {string[]} said
+ * @property {string} change how the robot file would change, as a unified diff
+ * @property {number} question_id
+ * @property {string} question empty while the robot moves, and after the end
+ * @property {string[]} answers
+ * @property {"" | "done" | "failed" | "cancelled"} ended
+ * @property {string} outcome how it ended
  */
 
 /**

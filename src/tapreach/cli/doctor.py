@@ -14,11 +14,13 @@ from rich.console import Console
 from tapreach.cli.checkup.check import Check, Verdict, worst
 from tapreach.cli.checkup.examine import examine
 from tapreach.cli.robot_file import find_robot_file
-from tapreach.cli.teaching.person import TeachingStopped, Terminal
-from tapreach.cli.teaching.teach import Lesson, teach
+from tapreach.cli.teaching.person import Terminal
+from tapreach.cli.teaching.teach import teach
 from tapreach.errors import InputError
 from tapreach.robot.clock import MonotonicClock
 from tapreach.robot.config import load_robot
+from tapreach.tasks.teaching.lesson import Lesson
+from tapreach.tasks.teaching.person import TeachingStopped
 
 NOT_WELL = 1
 COLOURS = {Verdict.OK: "green", Verdict.WARN: "yellow", Verdict.FAIL: "bold red"}

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 
 from tapreach.cli.address import address_in_network, page_address, qr_code
-from tapreach.cli.robot_file import describe_robot
+from tapreach.cli.robot_file import describe_robot, find_robot_file
 from tapreach.drivers.registry import make_robot
 from tapreach.errors import InputError
 from tapreach.robot.clock import MonotonicClock
@@ -50,7 +50,7 @@ def run(
     token = _token(token_file) if lan else None
     listener = listening_socket("0.0.0.0" if lan else "127.0.0.1", port)
     clock = MonotonicClock()
-    station = Station(make_robot(description, clock), clock, captures)
+    station = Station(make_robot(description, clock), clock, captures, robot_file=find_robot_file(robot))
     host = address_in_network() if lan else "localhost"
     # A token that stays is not told anew at every start: what is printed may end up in a journal.
     address = page_address(host, listener.getsockname()[1], None if token_file else token)

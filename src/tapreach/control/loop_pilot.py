@@ -1,18 +1,18 @@
 """The Pilot that tasks are given: motions handed to the control loop."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tapreach.control.arm_move import ArmMove
 from tapreach.control.arm_path_motion import ArmPathMotion, TimedPose
 from tapreach.control.joined_motion import ArmFirst, InTurn, Rest
 from tapreach.control.loop import ControlLoop
 from tapreach.control.motion import Motion
-from tapreach.control.own_step import OwnStep
+from tapreach.control.own_step import OwnMotion, OwnStep
 from tapreach.control.relative_move import ABOUT, ABOUT_TURN, Advance, Turn, slowed
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.interface import Robot
 from tapreach.robot.messages import ArmPose, Odometry
-from tapreach.robot.own_moves import MovesByItself
+from tapreach.robot.own_moves import MovesByItself, OwnMove
 
 
 class LoopPilot:
@@ -64,3 +64,7 @@ class LoopPilot:
     async def follow_arm(self, path: Sequence[TimedPose]) -> None:
         """See Pilot."""
         await self._loop.carry_out(ArmPathMotion(self._loop.move_arm, path))
+
+    async def carry_out(self, begin: Callable[[], OwnMove], moves_arm: bool = False) -> None:
+        """See Pilot."""
+        await self._loop.carry_out(OwnMotion(begin, moves_arm))

@@ -1,4 +1,6 @@
-"""A turn and an advance that the robot makes by itself, as a task's motion."""
+"""What the robot does by itself once told, as a task's motion: a turn and an advance, or another move."""
+
+from collections.abc import Callable
 
 from tapreach.control.motion import Progress, Senses
 from tapreach.errors import DriverError
@@ -12,16 +14,14 @@ READY_WITHIN_NS = 1 * SECOND
 PROGRESS = {MoveStatus.MOVING: Progress.MOVING, MoveStatus.ARRIVED: Progress.ARRIVED}
 
 
-class OwnStep:
-    """One command to the robot, kept alive by each `step` until it has ended; odometry tells what was done.
+class OwnMotion:
+    """A move of the robot's own, kept alive by each `step` until it has ended.
 
-    share: of the speed that the robot usually takes for moves of its own.
+    begin: begins it; raises DriverError where the robot is not ready yet. moves_arm: the wheels stand.
     """
 
-    moves_arm = False
-
-    def __init__(self, base: MovesByItself, step: PlanarStep, share: float = 1.0) -> None:
-        self._base, self._wanted, self._share = base, step, share
+    def __init__(self, begin: Callable[[], OwnMove], moves_arm: bool = False) -> None:
+        self._begin, self.moves_arm = begin, moves_arm
         self._move: OwnMove | None = None
         self._asked_ns: int | None = None
         self.progress = Progress.MOVING
@@ -34,12 +34,13 @@ class OwnStep:
                 self._go_on(now_ns)
             except DriverError as error:
                 self._wait_or_give_up(str(error), now_ns)
-        return None if self._move is not None and self.progress is Progress.MOVING else STILL
+        turns_wheels = self._move is not None and not self.moves_arm
+        return None if turns_wheels and self.progress is Progress.MOVING else STILL
 
     def _go_on(self, now_ns: int) -> None:
         if self._move is None:
             self._asked_ns = now_ns if self._asked_ns is None else self._asked_ns
-            self._move = self._base.drive_by(self._wanted, self._share)
+            self._move = self._begin()
         self._move.keep()
         self.progress = PROGRESS.get(self._move.status, Progress.GIVEN_UP)
         if self.progress is Progress.GIVEN_UP:
@@ -49,3 +50,13 @@ class OwnStep:
         is_patient = self._asked_ns is not None and now_ns - self._asked_ns < READY_WITHIN_NS
         if self._move is not None or not is_patient:
             self.progress, self.reason = Progress.GIVEN_UP, reason
+
+
+class OwnStep(OwnMotion):
+    """A turn and an advance as one command to the robot; odometry tells what was done.
+
+    share: of the speed that the robot usually takes for moves of its own.
+    """
+
+    def __init__(self, base: MovesByItself, step: PlanarStep, share: float = 1.0) -> None:
+        super().__init__(lambda: base.drive_by(step, share))

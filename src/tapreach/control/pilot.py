@@ -1,12 +1,13 @@
 """What a task may ask of the wheels and the arm. The control loop carries it out, gated like any operator."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from tapreach.control.arm_path_motion import TimedPose
 from tapreach.errors import TapreachError
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.messages import ArmPose, Odometry
+from tapreach.robot.own_moves import OwnMove
 
 
 class MotionInterrupted(TapreachError):
@@ -44,5 +45,12 @@ class Pilot(Protocol):
         """Lead the arm through `path`, each pose at its time, and return when it has come to rest.
 
         Ended early the arm holds where it is. Raises InputError for times that do not rise.
+        """
+        ...
+
+    async def carry_out(self, begin: Callable[[], OwnMove], moves_arm: bool = False) -> None:
+        """Keep a move of the robot's own alive until it has arrived; see CarryOut.
+
+        moves_arm: it moves the arm alone, and the arm holds where it is ended early.
         """
         ...

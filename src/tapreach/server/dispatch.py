@@ -6,8 +6,10 @@ from typing import Any
 from tapreach.server import messages as m
 from tapreach.server.message_base import Request
 from tapreach.server.messages_fetch import Fetch, FetchConfirm, FetchResume, FetchVerb
+from tapreach.server.messages_lesson import LessonAnswer, LessonEnd, LessonStart
 from tapreach.server.requests_driving import DrivingRequests
 from tapreach.server.requests_fetch import FetchRequests
+from tapreach.server.requests_lesson import LessonRequests
 from tapreach.server.requests_looking import LookingRequests
 from tapreach.server.requests_tasks import TaskRequests
 from tapreach.server.station import Station
@@ -25,6 +27,7 @@ def answerers(station: Station) -> dict[type[Request], Answerer]:
     """
     driving, looking = DrivingRequests(station), LookingRequests(station)
     tasks, fetching = TaskRequests(station), FetchRequests(station)
+    teaching = LessonRequests(station)
     return {
         m.Hello: looking.hello,
         m.Ping: looking.ping,
@@ -51,4 +54,7 @@ def answerers(station: Station) -> dict[type[Request], Answerer]:
         FetchConfirm: fetching.confirm,
         FetchResume: fetching.resume,
         FetchVerb: fetching.verb,
+        LessonStart: teaching.start,
+        LessonAnswer: teaching.answer,
+        LessonEnd: teaching.end,
     }

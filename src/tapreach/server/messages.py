@@ -19,6 +19,7 @@ from tapreach.server.message_parts import (
     TwistView,
 )
 from tapreach.server.messages_fetch import Fetch, FetchConfirm, FetchResume, FetchVerb, FetchView
+from tapreach.server.messages_lesson import LessonAnswer, LessonEnd, LessonName, LessonStart, LessonView
 
 PROTOCOL_VERSION = 1
 Accuracy = Annotated[float, Field(ge=0.001, le=0.5, allow_inf_nan=False)]
@@ -209,7 +210,10 @@ FromPage = Annotated[
     | Fetch
     | FetchConfirm
     | FetchResume
-    | FetchVerb,
+    | FetchVerb
+    | LessonStart
+    | LessonAnswer
+    | LessonEnd,
     Field(discriminator="type"),
 ]
 from_page: TypeAdapter[FromPage] = TypeAdapter(FromPage)
@@ -229,6 +233,7 @@ class Welcome(Message):
     steps_deg: tuple[int, ...] = (1, 5, 10, 20, 50)
     frozen_after_ms: int = 500
     stale_after_ms: int = 200
+    lessons: tuple[LessonName, ...] = Field((), description="what this robot can be taught")
 
 
 class Pong(Message):
@@ -364,5 +369,6 @@ FromServer = (
     | TargetGone
     | GuideView
     | FetchView
+    | LessonView
     | CapturesChanged
 )

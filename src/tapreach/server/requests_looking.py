@@ -29,6 +29,7 @@ class LookingRequests:
             camera=camera_view(description.camera),
             max_linear=description.base.max_linear,
             max_angular=description.base.max_angular,
+            lessons=station.tasks.lessons.offered,
         )
 
     def ping(self, visitor: Visitor, request: Ping) -> Pong:

@@ -38,10 +38,19 @@ class Station:
     """The robot, who may move it, and what is shown of it. One per process."""
 
     def __init__(
-        self, robot: Robot, clock: Clock, captures: Path, compute: ComputeService | None = None
+        self,
+        robot: Robot,
+        clock: Clock,
+        captures: Path,
+        compute: ComputeService | None = None,
+        robot_file: Path | None = None,
     ) -> None:
-        """`captures`: folder for stored frames. `compute`: a process of its own when left out."""
+        """`captures`: folder for stored frames. `compute`: a process of its own when left out.
+
+        `robot_file`: where lessons write what the robot was taught; without one there are none.
+        """
         self.robot = robot
+        self.robot_file = robot_file
         self.clock = clock
         self.frames = FrameStore()
         self.poses = PoseHistory()

@@ -13,7 +13,9 @@ from tapreach.geometry.pixel import Pixel, require_inside
 from tapreach.robot.clock import SECOND
 from tapreach.robot.messages import Frame
 from tapreach.server.fetch_desk import FetchDesk
+from tapreach.server.lesson_desk import LessonDesk
 from tapreach.server.messages import GuideView, TaskView
+from tapreach.server.messages_lesson import LessonName
 from tapreach.tasks.delay_task import DelayTask
 from tapreach.tasks.fetch.fetch_state import Mode, Verb
 from tapreach.tasks.fetch.known_target import tap_on
@@ -66,6 +68,7 @@ class TaskDesk:
         )
         self._runner = TaskRunner(self._context, station.loop, self._tell_progress)
         self._fetch = FetchDesk(station.hub, self._runner)
+        self.lessons = LessonDesk(station.hub, self._runner, station.robot, station.robot_file)
         self._guide: Guide | None = None
         self._guide_owner_id: int | None = None
         self._located_target_id: int | None = None
@@ -123,6 +126,11 @@ class TaskDesk:
         others = [each for each in self._station.targets.known() if each.target_id != target_id]
         self._fetch.start(tap, target_id, mode, others, session_id)
         self._located_target_id = target_id
+
+    def teach(self, lesson: LessonName, session_id: int) -> None:
+        """Begin a lesson. Raises InputError."""
+        self._require_motion(session_id)
+        self.lessons.start(lesson, session_id)
 
     async def measure_delay(self, session_id: int) -> TaskProgress | None:
         """Measure how late the camera is, and return how that ended. Raises InputError."""
@@ -220,6 +228,7 @@ class TaskDesk:
         )
         self._station.hub.tell("task", view)
         self._fetch.task_changed(progress)
+        self.lessons.task_changed(progress)
 
     def _tell_guide(self, state: GuideState) -> None:
         self._station.hub.tell("guide", GuideView(**asdict(state)))

@@ -31,7 +31,7 @@ async def check_board(visit: BoardVisit, arm: ArmSection, clock: Clock) -> list[
             *(Check(name, Verdict.FAIL, unknown, NOT_ASKED) for name in rest),
         ]
     before, began_ns = visit.telemetry_count, clock.now_ns()
-    await visit.pause(LOOK_NS)
+    await visit.talk.pause(LOOK_NS)
     rate_hz = (visit.telemetry_count - before) * SECOND / (clock.now_ns() - began_ns)
     if visit.telemetry is None or visit.welcome is None:
         return [Check("link", Verdict.FAIL, "the board fell silent while it was looked at", visit.reason)]

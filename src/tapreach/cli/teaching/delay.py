@@ -6,9 +6,6 @@ from contextlib import asynccontextmanager
 from math import hypot
 from pathlib import Path
 
-from tapreach.cli.teaching.file_changes import Changes, require_own_file
-from tapreach.cli.teaching.offer import offer_changes
-from tapreach.cli.teaching.person import Person
 from tapreach.drivers.registry import make_robot
 from tapreach.errors import DriverError, InputError
 from tapreach.estimation.camera_delay import CameraDelay
@@ -18,6 +15,9 @@ from tapreach.robot.interface import Robot
 from tapreach.server.station import Station
 from tapreach.server.task_desk import ComputeService
 from tapreach.tasks.task import TaskState
+from tapreach.tasks.teaching.file_changes import Changes, require_own_file
+from tapreach.tasks.teaching.offer import offer_changes
+from tapreach.tasks.teaching.person import Person
 
 PATIENCE_NS = 10 * SECOND
 PRESENCE_NS = 50 * MS

@@ -1,33 +1,18 @@
-"""The person at the terminal, who sees the robot and decides."""
+"""The person at the terminal."""
 
 import asyncio
 import os
 import sys
-from typing import Protocol, TextIO
+from typing import TextIO
 
-from tapreach.errors import InputError, TapreachError
+from tapreach.errors import InputError
+from tapreach.tasks.teaching.person import TeachingStopped
 
 STOP_WORDS = ("stop", "q", "quit")
 
 
-class TeachingStopped(TapreachError):
-    """The person has had enough; nothing is written."""
-
-
-class Person(Protocol):
-    """Who is asked, and told."""
-
-    def tell(self, text: str) -> None:
-        """Say something."""
-        ...
-
-    async def ask(self, question: str, answers: tuple[str, ...]) -> str:
-        """Return one of the answers. Raises TeachingStopped when the person stops instead."""
-        ...
-
-
 class Terminal:
-    """A person at a terminal. Waiting for a line does not hold up the session with the board."""
+    """See Person. Waiting for a line does not hold up the session with the board."""
 
     def __init__(
         self, option: str = "--teach", source: TextIO | None = None, target: TextIO | None = None
@@ -42,6 +27,10 @@ class Terminal:
         """See Person."""
         self._target.write(f"{text}\n")
         self._target.flush()
+
+    def show_change(self, difference: str) -> None:
+        """See Person."""
+        self.tell(f"\n{difference}")
 
     async def ask(self, question: str, answers: tuple[str, ...]) -> str:
         """See Person. The end of the input stops."""

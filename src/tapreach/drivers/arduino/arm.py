@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from tapreach.drivers.arduino.servos import ServoMap
+from tapreach.drivers.arduino.servos import Pulses, ServoMap
 from tapreach.drivers.arduino.session import Session
 from tapreach.drivers.arduino.wire import Result, ServoLimits, Servos, Telemetry
 from tapreach.robot.arm_section import ArmSection
@@ -28,6 +28,8 @@ class BoardArm:
         self._target: ArmPose | None = None
         self._open: Servos | None = None
         self._sent_ns = 0
+        self._pulses: Pulses = (0, 0, 0, 0)
+        self._is_taught = False
 
     def limits(self) -> tuple[ServoLimits, ...]:
         """Return what the board must know of its servos."""
@@ -38,9 +40,23 @@ class BoardArm:
     def move(self, target: ArmPose) -> ArmPose:
         """See Arm. Limits are the joints' and the servos'."""
         self._require_link()
+        if self._is_taught:
+            return self._hold()
         self._target = self._map.limited(target)
         self._send(Servos(self._map.pulses_us(self._target), self._map.speeds_us_per_s()))
         return self._target
+
+    def begin_teaching(self) -> None:
+        """From now on poses mean nothing: who sends the arm somewhere has it hold where it is."""
+        self._open = self._target = None
+        self._is_taught = True
+
+    def end_teaching(self) -> tuple[ServoLimits, ...]:
+        """Poses count again. Return the limits for the board, wide enough that no servo moves for them."""
+        self._open = self._target = None
+        self._is_taught = False
+        pairs = zip(self.limits(), self._pulses, strict=True)
+        return tuple(_around(limits, pulse) if pulse else limits for limits, pulse in pairs)
 
     def subscribe(self, listener: Callable[[ArmState], None]) -> Unsubscribe:
         """See Arm."""
@@ -48,6 +64,7 @@ class BoardArm:
 
     def take(self, telemetry: Telemetry, captured_ns: int) -> None:
         """Take where the pulses are: the servos themselves tell nothing."""
+        self._pulses = telemetry.pulse_us
         pose = self._map.pose(telemetry.pulse_us)
         target = self._target if self._target is not None else pose
         wanted = self._map.pulses_us(target)
@@ -78,5 +95,15 @@ class BoardArm:
         self._open, self._sent_ns = command, self._clock.now_ns()
         self._session.send(command)
 
+    def _hold(self) -> ArmPose:
+        if any(self._pulses):
+            self._send(Servos(self._pulses, (0, 0, 0, 0)))
+        return self._map.pose(self._pulses)
+
     def _is_away(self, pulses: tuple[int, int, int, int], wanted: tuple[int, int, int, int]) -> bool:
         return any(abs(pulse - goal) > ARRIVED_US for pulse, goal in zip(pulses, wanted, strict=True))
+
+
+def _around(limits: ServoLimits, pulse_us: int) -> ServoLimits:
+    low_us, high_us = min(limits.low_us, pulse_us), max(limits.high_us, pulse_us)
+    return ServoLimits(limits.index, low_us, high_us, limits.rest_us)

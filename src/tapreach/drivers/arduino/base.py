@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from tapreach.drivers.arduino.relative_move import RelativeMove, legs_of, next_id
 from tapreach.drivers.arduino.session import Session
+from tapreach.drivers.arduino.wheel_spin import WheelSpin
 from tapreach.drivers.arduino.wheels import Wheels
 from tapreach.drivers.arduino.wire import Drive, Move, Moved, Result, State, Telemetry
 from tapreach.drivers.tick_odometry import TickOdometry
@@ -16,6 +17,7 @@ from tapreach.robot.messages import STILL, Odometry, Twist
 from tapreach.robot.own_moves import MoveStatus
 
 OBEYING = (State.READY, State.DRIVING, State.MOVING)
+BoardMove = RelativeMove | WheelSpin
 STANDING_NS = 100 * MS
 """So often a robot that was told to stand is told again: its wheels stay ready for the next command."""
 
@@ -37,7 +39,7 @@ class BoardBase:
         self._listeners = Listeners()
         self._told_ns = 0
         self._telemetry: Telemetry | None = None
-        self._move: RelativeMove | None = None
+        self._move: BoardMove | None = None
         self._move_id = 0
         self._stands = True
         self._sent_ns = clock.now_ns()
@@ -60,6 +62,21 @@ class BoardBase:
 
     def drive_by(self, step: PlanarStep, share: float = 1.0) -> RelativeMove:
         """See MovesByItself."""
+        telemetry = self._require_ready()
+        legs = legs_of(step, self._wheels, share)
+        self._move = move = RelativeMove(legs, self._session, self._clock, next_id(self._move_id))
+        self._move_id = (self._move_id + len(legs)) % 255
+        move.on_telemetry(telemetry)
+        move.keep()
+        return move
+
+    def spin(self, left: int, right: int, duration_ns: int) -> WheelSpin:
+        """Begin to turn the wheels at ticks/s for a while. Raises as `drive_by`."""
+        self._require_ready()
+        self._move = spin = WheelSpin(left, right, duration_ns, self._session, self._clock)
+        return spin
+
+    def _require_ready(self) -> Telemetry:
         self._require_link()
         if self._move is not None and self._move.status is MoveStatus.MOVING:
             raise DriverError("another move is not finished: cancel it first")
@@ -67,13 +84,7 @@ class BoardBase:
             state = self._telemetry.state.name.lower() if self._telemetry else "unknown"
             raise DriverError(f"the wheels are not ready ({state}): send a zero first")
         self._stands, self.wished_ns = False, self._clock.now_ns()
-        legs = legs_of(step, self._wheels, share)
-        self._move = RelativeMove(legs, self._session, self._clock, next_id(self._move_id))
-        self._move_id = (self._move_id + len(legs)) % 255
-        if self._telemetry is not None:
-            self._move.on_telemetry(self._telemetry)
-        self._move.keep()
-        return self._move
+        return self._telemetry
 
     def tick(self) -> None:
         """Keep wheels ready that were told to stand."""

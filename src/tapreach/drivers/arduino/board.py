@@ -6,7 +6,8 @@ from tapreach.drivers.arduino.arm import BoardArm
 from tapreach.drivers.arduino.base import BoardBase
 from tapreach.drivers.arduino.fault_words import fault_sentence, restart_sentence
 from tapreach.drivers.arduino.session import Phase, Session
-from tapreach.drivers.arduino.wheels import Wheels
+from tapreach.drivers.arduino.talk import Talk
+from tapreach.drivers.arduino.wheels import FIRMWARE_GAINS, Wheels
 from tapreach.drivers.arduino.wire import (
     Clear,
     Fault,
@@ -17,6 +18,7 @@ from tapreach.drivers.arduino.wire import (
     Telemetry,
     ToFirmware,
     Welcome,
+    Wiring,
 )
 from tapreach.drivers.arduino.wiring import wiring_of
 from tapreach.errors import LinkLost
@@ -45,6 +47,7 @@ class FramedBoard:
     ) -> None:
         self._description, self._clock, self._tell = description, clock, tell
         self.session = Session(clock, write, self, self._setup)
+        self.talk = Talk(self.session, clock, lambda: self._restart or self._reason)
         self.base = BoardBase(description.base, self.session, clock, self._require_link)
         self.arm = BoardArm(description.arm, self.session, clock, self._require_link)
         self._reason = "not connected"
@@ -53,6 +56,8 @@ class FramedBoard:
         self._faults = Fault(0)
         self._faulted_ns = self._cleared_ns = 0
         self.battery_mv = 0
+        self.lends_gains = False
+        """Once a lesson has taken the gains, every opening gives them back."""
 
     def found(self) -> None:
         """The link is open."""
@@ -106,6 +111,7 @@ class FramedBoard:
     def on_telemetry(self, telemetry: Telemetry, captured_ns: int) -> None:
         """See SessionEars."""
         self.battery_mv = telemetry.battery_mv
+        self.talk.on_telemetry(telemetry)
         if telemetry.faults & ~self._faults:
             self._faulted_ns = self._clock.now_ns()
         self._faults = telemetry.faults
@@ -114,6 +120,7 @@ class FramedBoard:
 
     def on_answer(self, message: ToFirmware, result: Result) -> None:
         """See SessionEars."""
+        self.talk.on_answer(message, result)
         self.base.on_answer(message, result)
         self.arm.on_answer(message, result)
 
@@ -125,17 +132,25 @@ class FramedBoard:
         # A reset's own latched fault was said as the reason of the restart; others are said first.
         # The wiring always: the board may still have that of another robot file.
         link = self._description.link
-        wiring = wiring_of(link.reversed if link else ())
-        return (wiring, *self.arm.limits(), *self._gains(), Clear(OF_RESETS))
+        gains = (self.gains,) if self.lends_gains or (link and link.wheel_control) else ()
+        return (self.wiring, *self.arm.limits(), *gains, Clear(OF_RESETS))
 
-    def _gains(self) -> tuple[Gains, ...]:
+    @property
+    def wiring(self) -> Wiring:
+        """Which parts the board has to turn round, by the robot file."""
+        link = self._description.link
+        return wiring_of(link.reversed if link else ())
+
+    @property
+    def gains(self) -> Gains:
+        """The robot file's, or those the firmware starts with."""
         control = self._description.link.wheel_control if self._description.link else None
         if control is None:
-            return ()
+            return FIRMWARE_GAINS
         wheels = Wheels(self._description.base)
         parts = (control.kp, control.ki, control.kd, control.feedforward)
         kp, ki, kd, feedforward = (round(256 * part) for part in parts)
-        return (Gains(kp, ki, kd, feedforward, wheels.fastest, wheels.quickest),)
+        return Gains(kp, ki, kd, feedforward, wheels.fastest, wheels.quickest)
 
     def _clear_faults(self) -> None:
         now_ns = self._clock.now_ns()
@@ -155,6 +170,7 @@ class FramedBoard:
 
     def _lose(self, reason: str) -> None:
         self._reason, self._faults = reason, Fault(0)
+        self.talk.lose()
         self.base.lose(reason)
         self.arm.lose()
         self._tell(Health(LinkStatus.LOST, reason))

@@ -1,19 +1,21 @@
 """The robot whose wheels and servos a microcontroller drives, with any camera."""
 
 import asyncio
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager, suppress
 
 from tapreach.drivers.arduino.board import FramedBoard
+from tapreach.drivers.arduino.lesson import taught as lesson_on
 from tapreach.drivers.arduino.link import Link
 from tapreach.drivers.arduino.parts import Board, CameraFactory
 from tapreach.drivers.arduino.ports import OpenPort, open_port
 from tapreach.drivers.arduino.ros_board import RosBoard
-from tapreach.errors import ConfigError
+from tapreach.errors import ConfigError, DriverError
 from tapreach.robot.clock import MS, SECOND, Clock
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.interface import Arm, Base, FrameSource, Listeners, Unsubscribe
 from tapreach.robot.messages import Health, LinkStatus
+from tapreach.robot.teachable import Bench, CarryOut
 
 TICK_NS = 10 * MS
 CONNECT_NS = 5 * SECOND
@@ -76,6 +78,19 @@ class ArduinoRobot:
     def subscribe_health(self, listener: Callable[[Health], None]) -> Unsubscribe:
         """See Robot."""
         return self._health_listeners.subscribe(listener)
+
+    @property
+    def can_be_taught(self) -> bool:
+        """See Teachable."""
+        return isinstance(self._board, FramedBoard)
+
+    @asynccontextmanager
+    async def taught(self, description: RobotDescription, carry_out: CarryOut) -> AsyncIterator[Bench]:
+        """See Teachable."""
+        if not isinstance(self._board, FramedBoard):
+            raise DriverError("the board's firmware lacks what lessons need: flash Tapreach's own")
+        async with lesson_on(self._board, description, carry_out) as bench:
+            yield bench
 
     async def connect(self) -> None:
         """See Robot; raises nothing for what may still come."""

@@ -6,26 +6,23 @@ from contextlib import suppress
 from typing import Self
 
 from tapreach.drivers.arduino.board import NO_FIRMWARE, NO_FRAMES
-from tapreach.drivers.arduino.fault_words import refusal_words
 from tapreach.drivers.arduino.link import Link
 from tapreach.drivers.arduino.ports import OpenPort, open_port
 from tapreach.drivers.arduino.session import Phase, Session
+from tapreach.drivers.arduino.talk import TICK_NS, Talk
 from tapreach.drivers.arduino.wire import Moved, Result, Stop, Telemetry, ToFirmware, Welcome
-from tapreach.errors import DriverError, LinkLost
-from tapreach.robot.clock import MS, SECOND, Clock
+from tapreach.robot.clock import SECOND, Clock
 from tapreach.robot.link_section import LinkSection
 
-TICK_NS = 20 * MS
 OPENING_NS = 8 * SECOND
 """Twice what a boot loader may take after a port was opened."""
 TRIES = 2
-SENDS, ANSWER_NS = 3, 300 * MS
 
 
 class BoardVisit:
     """A framed session without a robot behind it. `async with` opens the port and closes it again.
 
-    Nothing is sent but greeting and clock questions until `ask` or `send` is called; leaving sends a Stop.
+    Nothing is sent but greeting and clock questions, and what is said through `talk`; leaving sends a Stop.
     """
 
     def __init__(
@@ -39,11 +36,10 @@ class BoardVisit:
         self.address = section.address
         self.session = Session(clock, self._write, self, lambda: self._setup)
         self._link = Link(section, clock, self.session.start, self.session.take, self._lost, open_port)
-        self._answers: list[tuple[ToFirmware, Result]] = []
+        self.talk = Talk(self.session, clock, lambda: self.reason)
         self._tasks: list[asyncio.Task[None]] = []
         self._losses = 0
         self.reason = "the port is being opened"
-        self.telemetry: Telemetry | None = None
         self.telemetry_count = 0
         self.on_each: Callable[[Telemetry], None] = lambda telemetry: None
 
@@ -64,7 +60,12 @@ class BoardVisit:
     @property
     def is_open(self) -> bool:
         """True while the board answers."""
-        return self.session.phase is Phase.OPEN
+        return self.talk.is_open
+
+    @property
+    def telemetry(self) -> Telemetry | None:
+        """What the board told last; None while it is out of reach."""
+        return self.talk.telemetry
 
     @property
     def _tells(self) -> bool:
@@ -81,42 +82,8 @@ class BoardVisit:
 
     async def opened(self, patience_ns: int = OPENING_NS) -> bool:
         """Wait until the board answers; False where it does not after a second try, and `reason` says why."""
-        await self.until(lambda: self._tells or self._is_hopeless, patience_ns)
+        await self.talk.until(lambda: self._tells or self._is_hopeless, patience_ns)
         return self._tells
-
-    async def until(self, holds: Callable[[], bool], patience_ns: int) -> bool:
-        """Wait until it holds; False where it does not in time."""
-        end_ns = self._clock.now_ns() + patience_ns
-        while not holds():
-            if self._clock.now_ns() >= end_ns:
-                return False
-            await self.pause(TICK_NS)
-        return True
-
-    async def pause(self, duration_ns: int) -> None:
-        """Let time pass while the session goes on."""
-        await self._clock.sleep_until(self._clock.now_ns() + duration_ns)
-
-    async def ask(self, message: ToFirmware) -> Result:
-        """Send a command, again where its answer is lost, and return the answer. Raises LinkLost."""
-        self._answers.clear()
-        for _ in range(SENDS):
-            if not self.is_open:
-                break
-            self.session.send(message)
-            await self.until(lambda: self._answer_to(message) is not None, ANSWER_NS)
-            if (answer := self._answer_to(message)) is not None:
-                return answer
-        raise LinkLost(self.reason or "the board does not answer: check its cable")
-
-    async def require(self, message: ToFirmware) -> None:
-        """Like `ask`; raises DriverError with the reason where the board refuses."""
-        result = await self.ask(message)
-        if result is not Result.OK:
-            raise DriverError(f"the board refuses {type(message).__name__}: {refusal_words(result)}")
-
-    def _answer_to(self, message: ToFirmware) -> Result | None:
-        return next((result for each, result in self._answers if each == message), None)
 
     def on_phase(self, phase: Phase, reason: str) -> None:
         """See SessionEars. Greeting again is no news: why the link was lost before says more."""
@@ -128,13 +95,13 @@ class BoardVisit:
 
     def on_telemetry(self, telemetry: Telemetry, captured_ns: int) -> None:
         """See SessionEars."""
-        self.telemetry = telemetry
+        self.talk.on_telemetry(telemetry)
         self.telemetry_count += 1
         self.on_each(telemetry)
 
     def on_answer(self, message: ToFirmware, result: Result) -> None:
         """See SessionEars."""
-        self._answers.append((message, result))
+        self.talk.on_answer(message, result)
 
     def on_moved(self, moved: Moved) -> None:
         """See SessionEars."""
@@ -144,7 +111,7 @@ class BoardVisit:
 
     def _lost(self, reason: str) -> None:
         self.session.end()
-        self.telemetry = None
+        self.talk.lose()
         self._losses += 1
         self.reason = reason
 

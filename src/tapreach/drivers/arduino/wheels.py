@@ -2,12 +2,15 @@
 
 from math import hypot, tau
 
+from tapreach.drivers.arduino.wire import Gains
 from tapreach.drivers.limits import limited_twist
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.robot.config import BaseSection
 from tapreach.robot.messages import Twist
 
 INT16, UINT16 = 32767, 65535
+FIRMWARE_GAINS = Gains(20, 200, 0, 20, 4000, 8000)
+"""Those the firmware starts with (control.h)."""
 GENTLE = 0.5
 """Share of speed and acceleration that a move of the board's own uses: gentle driving slips less."""
 

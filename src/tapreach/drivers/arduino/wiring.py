@@ -17,8 +17,3 @@ def wiring_of(parts: tuple[Part, ...]) -> Wiring:
     for part in parts:
         told |= PARTS[part]
     return Wiring(told)
-
-
-def turned(parts: tuple[Part, ...], more: tuple[Part, ...]) -> tuple[Part, ...]:
-    """Return the parts that are the other way round where `more` turned out wrong with `parts` reversed."""
-    return tuple(part for part in PARTS if (part in parts) != (part in more))
