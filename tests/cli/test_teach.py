@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.cli.visited_board import play_clocked
-from tests.drivers.arduino.peer import PeerBoard
+from tests.drivers.arduino.wired import WiredBoard
 
 from tapreach.cli.teaching.teach import teach
 from tapreach.drivers.arduino.bench import PWM, SPEED, WITHOUT_FEEDBACK
@@ -21,7 +21,6 @@ from tapreach.drivers.arduino.wire import (
     Gains,
     Move,
     Reversed,
-    ServoLimits,
     Servos,
     Welcome,
     Wiring,
@@ -62,20 +61,6 @@ class Scripted:
     @property
     def text(self):
         return "\n".join(self.told)
-
-
-class WiredBoard(PeerBoard):
-    """Counts as its encoders are wired: `counts` makes told ticks of true ones."""
-
-    def __init__(self, clock):
-        super().__init__(clock, first_tick=0)
-        self.counts = lambda left, right: (left, right)
-        self.limits = {index: ServoLimits(index, 500, 2500, 1500) for index in range(4)}
-
-    def telemetry(self):
-        told = super().telemetry()
-        left, right = self.counts(told.left, told.right)
-        return replace(told, left=left, right=right)
 
 
 @pytest.fixture

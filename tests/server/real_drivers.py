@@ -71,10 +71,12 @@ class RealRobot:
 
 
 @contextlib.asynccontextmanager
-async def real_robot(folder: Path) -> AsyncIterator[RealRobot]:
+async def real_robot(
+    folder: Path, robot_file: Path | None = None, board_class: type[PeerBoard] = PeerBoard
+) -> AsyncIterator[RealRobot]:
     """Serve it; the line and the camera are there from the beginning."""
     clock = MonotonicClock()
-    board = PeerBoard(clock, first_tick=0)
+    board = board_class(clock, first_tick=0)
     line = PtyLine(board, folder / "board")
     described = description_for(line.address)
     camera = NetworkCamera(described)
@@ -82,7 +84,7 @@ async def real_robot(folder: Path) -> AsyncIterator[RealRobot]:
     await camera.start()
     section = described.camera.model_copy(update={"source": camera.url, "rate_hz": RATE_HZ})
     robot = make_arduino_robot(described.model_copy(update={"camera": section}), clock)
-    station = Station(robot, clock, folder / "captures", InlineService())
+    station = Station(robot, clock, folder / "captures", InlineService(), robot_file)
     listener = listening_socket("127.0.0.1", 0)
     port = listener.getsockname()[1]
     ready = asyncio.Event()

@@ -64,13 +64,10 @@ class LessonDesk:
         if progress.kind != LessonTask.kind or self._person is None:
             return
         if progress.state is not TaskState.RUNNING:
-            asked, self._person = self._person.asked, None
-            view = self._view(asked)
-            ended = {"ended": progress.state.value, "outcome": progress.message}
-            self._hub.tell(_KEY, view.model_copy(update=ended))
+            said, self._person = self._person.last_words, None
+            end = progress.state.value
+            view = LessonView(lesson=self._lesson, said=said, ended=end, outcome=progress.message)
+            self._hub.tell(_KEY, view)
 
     def _show(self, asked: Asked) -> None:
-        self._hub.tell(_KEY, self._view(asked))
-
-    def _view(self, asked: Asked) -> LessonView:
-        return LessonView(lesson=self._lesson, **asdict(asked))
+        self._hub.tell(_KEY, LessonView(lesson=self._lesson, **asdict(asked)))

@@ -20,9 +20,7 @@ class LessonAnswer(Request):
     """Answer the question that is being asked."""
 
     type: Literal["lesson_answer"]
-    question_id: int = Field(
-        description="of the question on the screen; an older one is refused"
-    )
+    question_id: int = Field(description="of the question on the screen; an older one is refused")
     answer: str = Field(max_length=20, description="one of the question's answers")
 
 
@@ -33,7 +31,7 @@ class LessonEnd(Request):
 
 
 class LessonView(Message):
-    """A lesson: what was said since the last answer, and what is asked now."""
+    """A lesson: what was said last, and what is asked now."""
 
     type: Literal["lesson"] = "lesson"
     lesson: LessonName | None = Field(description="null: there is none")

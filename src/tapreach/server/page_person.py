@@ -24,11 +24,19 @@ class PagePerson:
     def __init__(self, on_change: Callable[[Asked], None]) -> None:
         self._on_change = on_change
         self._answer: asyncio.Future[str] | None = None
+        self._is_answered = False
         self.asked = Asked()
 
     def tell(self, text: str) -> None:
-        """See Person."""
-        self._show(replace(self.asked, said=(*self.asked.said, text)))
+        """See Person. What was said stays until something else is said after an answer."""
+        said = (text,) if self._is_answered else (*self.asked.said, text)
+        self._is_answered = False
+        self._show(replace(self.asked, said=said))
+
+    @property
+    def last_words(self) -> tuple[str, ...]:
+        """What was said since the last answer."""
+        return () if self._is_answered else self.asked.said
 
     def show_change(self, difference: str) -> None:
         """See Person."""
@@ -42,8 +50,8 @@ class PagePerson:
         try:
             return await self._answer
         finally:
-            self._answer = None
-            self._show(Asked(question_id=question_id))
+            self._answer, self._is_answered = None, True
+            self._show(Asked(said=self.asked.said, question_id=question_id))
 
     def answer(self, question_id: int, answer: str) -> None:
         """Take an answer. Raises InputError for one to another question, or that is none."""

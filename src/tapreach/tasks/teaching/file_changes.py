@@ -1,6 +1,7 @@
 """What was taught, written into the robot file: comments, order and everything else stay as they are."""
 
 import difflib
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import NamedTemporaryFile
@@ -31,9 +32,17 @@ def changed_text(text: str, changes: Changes, source: str) -> str:
 
 
 def difference(before: str, after: str, name: str) -> str:
-    """Return the lines that change, as a person reads them."""
-    lines = difflib.unified_diff(before.splitlines(), after.splitlines(), name, name, lineterm="", n=0)
-    return "\n".join(lines)
+    """Return the lines that change as a unified diff; each hunk names the table that it stands in."""
+    old = before.splitlines()
+    lines = difflib.unified_diff(old, after.splitlines(), name, name, lineterm="", n=0)
+    return "\n".join(_with_table(line, old) for line in lines)
+
+
+def _with_table(line: str, old: list[str]) -> str:
+    found = re.match(r"@@ -(\d+)", line)
+    above = old[: int(found[1])] if found else []
+    table = next((each for each in reversed(above) if each.startswith("[")), "")
+    return f"{line} {table.partition(']')[0]}]" if table else line
 
 
 def require_own_file(path: Path) -> None:
