@@ -18,6 +18,7 @@ import { FetchPanel } from "./ui/fetch_panel.js";
 import { Guide } from "./ui/guide.js";
 import { Hints } from "./ui/hints.js";
 import { Lease } from "./ui/lease.js";
+import { Lesson } from "./ui/lesson.js";
 import { Pads } from "./ui/pads.js";
 import { PlaybackBar } from "./ui/playback_bar.js";
 import { Popovers } from "./ui/popovers.js";
@@ -64,6 +65,7 @@ const popovers = new Popovers();
 const hints = new Hints();
 const lease = new Lease(control, situation, toast);
 const guide = new Guide(control, toast);
+const lesson = new Lesson(control, situation, toast);
 const captures = new Captures(control, toast);
 const fetchMode = new FetchMode();
 const fetchPanel = new FetchPanel(control, toast);
@@ -103,6 +105,7 @@ function joinControl() {
     if (link.stage !== "open") {
       taskPanel.clear();
       fetchPanel.show(null);
+      lesson.hide();
       targets.clear();
       situation.learn({ link, welcome: null, state: null });
     } else situation.learn({ link });
@@ -135,6 +138,7 @@ function joinControl() {
   on(control, "target", (/** @type {import("./net/messages.js").TargetView} */ target) => targets.put(target));
   on(control, "target_gone", (/** @type {import("./net/messages.js").TargetGone} */ gone) => targets.remove(gone.target_id));
   on(control, "guide", (/** @type {import("./net/messages.js").GuideView} */ view) => guide.show(view));
+  on(control, "lesson", (/** @type {import("./net/messages.js").LessonView} */ view) => lesson.show(view));
   on(control, "captures_changed", () => void captures.refresh());
 }
 
@@ -189,6 +193,7 @@ function joinMenus() {
   const items = [
     ["guide-two-tap", () => guide.start("two_tap")],
     ["guide-rotation", () => guide.start("rotation_centre")],
+    ["menu-lessons", () => lesson.choose()],
     ["menu-keys", () => popovers.toggle("keys", "menu-open")],
     ["menu-hints", () => hints.again()],
   ];

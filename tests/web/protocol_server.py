@@ -72,6 +72,7 @@ class ProtocolServer:
         self.path: list[object] = []
         self.base = (0.0, 0.0, 0.0)
         self.sends_frames = True
+        self.lessons: tuple[str, ...] = ()
         self.refuses = False
         self.silent_session = 0
         self.tap_refusal = ""
@@ -249,6 +250,7 @@ class ProtocolServer:
         return messages.Welcome.model_validate(
             {"seq": seq, "session_id": session, "robot": "Rover", "camera": camera}
             | {"max_linear": 0.3, "max_angular": 1.2, "frozen_after_ms": self.frozen_after_ms}
+            | {"lessons": self.lessons}
         ).model_dump()
 
     def _lease(self, **facts: Any) -> None:

@@ -13,6 +13,14 @@ LONG = (
     "Turn the robot left by 10 to 15 degrees about its own axis. The target moves right of the centre line."
 )
 LEAST_PX = 48
+CHANGE = """--- rover.toml
++++ rover.toml
+@@ -61,2 +61,2 @@ [arm.servos.shoulder]
+-low_us = 720
++low_us = 680
+@@ -64 +64 @@ [arm.servos.shoulder]
+-pulse_at_zero_us = 1500
++pulse_at_zero_us = 1470"""
 
 # Controls a finger can reach now: in their own scroller's window, and not under something else.
 CONTROLS = """() => [...document.querySelectorAll('button, a[href], input')].flatMap(element => {
@@ -108,9 +116,29 @@ def hinted(page, _server):
     page.click("#menu-hints")
 
 
+def with_lessons(page, server):
+    server.lessons = ("motors", "encoders", "servos")
+    page.reload()
+    page.click("#menu-open")
+    page.click("#menu-lessons")
+
+
+def with_jog(page, server):
+    said = "Go by steps until the arm points straight ahead; a servo that hums presses against something."
+    asked = {"question_id": 5, "question": "1450 µs", "answers": ["-", "+", "--", "++", "ok"]}
+    server.push({"type": "lesson", "lesson": "servos", "said": [said]} | asked)
+    page.wait_for_selector("#lesson-acts button:not([disabled])")
+
+
+def with_change(page, server):
+    asked = {"question_id": 6, "question": "Write this?", "answers": ["yes", "no"]}
+    server.push({"type": "lesson", "lesson": "servos", "change": CHANGE} | asked)
+    page.wait_for_selector("#lesson-change:not([hidden])")
+
+
 STATES = [
-    nothing, with_target, with_task, with_guide, with_captures, with_steps, with_menu, with_keys,
-    paused, stopped, frozen, disconnected, asked, hinted,
+    nothing, with_target, with_task, with_guide, with_lessons, with_jog, with_change, with_captures,
+    with_steps, with_menu, with_keys, paused, stopped, frozen, disconnected, asked, hinted,
 ]  # fmt: skip
 
 
@@ -200,7 +228,9 @@ def contrast(text, backgrounds, behind):
     return (light + 0.05) / (dark + 0.05)
 
 
-@pytest.mark.parametrize("state", [with_task, with_guide, with_captures, stopped, with_keys])
+@pytest.mark.parametrize(
+    "state", [with_task, with_guide, with_jog, with_change, with_captures, stopped, with_keys]
+)
 def test_text_reads_at_wcag_aa_over_a_dark_room(server, open_page, state):
     page = open_page()
     state(page, server)

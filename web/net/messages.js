@@ -444,7 +444,7 @@ export const PROTOCOL_VERSION = 1;
  */
 
 /**
- * A lesson: what was said since the last answer, and what is asked now.
+ * A lesson: what was said last, and what is asked now.
  *
  * @typedef {object} LessonView
  * @property {"lesson"} type

@@ -28,11 +28,12 @@ export class TaskPanel {
   show(task) {
     const wasRunning = this.task?.task_id === task.task_id && this.task.state === "running";
     this.task = task;
-    byId("task").hidden = task.state !== "running";
+    // A lesson has a panel of its own, which also tells its end.
+    byId("task").hidden = task.state !== "running" || task.kind === "lesson";
     setText(byId("task-phase"), sentence((task.phase || task.kind).replaceAll("_", " ")));
     setText(byId("task-message"), task.message);
     byId("task-progress").setAttribute("value", String(task.progress));
-    if (wasRunning && task.state !== "running") this.tellEnd(task);
+    if (wasRunning && task.kind !== "lesson" && task.state !== "running") this.tellEnd(task);
   }
 
   /** @param {MoveView} move one without tracks says that it is over */
