@@ -1,7 +1,6 @@
 """The live robot in a process of its own, so that nothing else in the test's process holds it up."""
 
 import json
-import os
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -48,7 +47,7 @@ def live_process(scene: str, folder: Path) -> Iterator[LiveProcess]:
     """Start it; end it by closing its input."""
     command = [sys.executable, "-m", "tests.firmware.sim.live_process", scene, str(folder)]
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-    process = subprocess.Popen(command, cwd=ROOT, env={"LP_NUM_THREADS": "1", **os.environ}, **pipes)
+    process = subprocess.Popen(command, cwd=ROOT, **pipes)
     try:
         yield LiveProcess(process, Path(process.stdout.readline().strip()))
     finally:

@@ -11,9 +11,6 @@ import signal
 import socket
 import sys
 
-# Before OpenGL is loaded: one drawing thread leaves a core to physics and server, at the same picture rate.
-os.environ.setdefault("LP_NUM_THREADS", "1")
-
 import mujoco
 
 from tapreach.drivers.sim.camera import SimCamera

@@ -1,7 +1,6 @@
 """The host's side of the simulated robot: starts the simulator's process and speaks with it."""
 
 import asyncio
-import os
 import socket
 import subprocess
 import sys
@@ -222,9 +221,4 @@ class SimRobot:
 
 def _spawn(control_fd: int, frames_fd: int) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-m", "tapreach.drivers.sim.child", str(control_fd), str(frames_fd)]
-    return subprocess.Popen(
-        command,
-        pass_fds=(control_fd, frames_fd),
-        stdin=subprocess.DEVNULL,
-        env={"LP_NUM_THREADS": "1", **os.environ},
-    )
+    return subprocess.Popen(command, pass_fds=(control_fd, frames_fd), stdin=subprocess.DEVNULL)
