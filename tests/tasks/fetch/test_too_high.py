@@ -3,12 +3,14 @@
 import asyncio
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import binom
 
+from tapreach.estimation.point_estimate import Status
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.pixel_box import PixelBox
 from tapreach.geometry.planar_motion import PlanarPose
@@ -132,6 +134,14 @@ def test_box_that_reaches_down_to_the_claw_is_not_refused_for_its_upper_edge() -
     assert math.isinf(asyncio.run(_within_reach_up_to(whole, whole.memory.tap)))
 
 
+@pytest.mark.parametrize("status", [Status.RANGE_BOUNDED_BELOW, Status.DETERMINED])
+def test_look_in_vain_is_refused_where_it_is_surely_farther_than_it_may_be(status: Status) -> None:
+    lost = Ended(Outcome.LOST, "it has left the picture")
+    estimate = SimpleNamespace(status=status, range_interval_95=(1.4, None))
+    assert _not_located(lost, 1.2, estimate).outcome is Outcome.CANNOT  # type: ignore[arg-type]
+    assert _not_located(lost, 1.5, estimate) is lost  # type: ignore[arg-type]
+
+
 def test_look_in_vain_is_refused_only_where_the_line_of_sight_rises() -> None:
     lost = Ended(Outcome.LOST, "it has left the picture")
     assert _not_located(lost, 0.7, None).outcome is Outcome.CANNOT
@@ -151,3 +161,11 @@ def test_tall_thing_that_the_claw_can_grip_lower_down_is_fetched() -> None:
     vase = size_at(1.0, 0.0, width=0.05, height=0.4)
     found = preview(Thing(np.array([1.0, 0.0, 0.38]), 1e-4 * np.eye(3), vase), [], PlanarPose(), ROBOT)
     assert found.verdict is Verdict.YES
+
+
+def test_outline_of_a_thing_on_something_is_no_tall_thing_that_stands_on_the_floor() -> None:
+    """Nobody drew it: a can on a crate of its colour looks like one upright thing."""
+    outline = replace(size_at(1.0, 0.0, width=0.05, height=0.49), by_picture=True, told=2)
+    found = preview(Thing(np.array([1.0, 0.0, 0.45]), 1e-4 * np.eye(3), outline), [], PlanarPose(), ROBOT)
+    assert found.verdict is Verdict.NO
+    assert found.reason.startswith("too high") and "tap it lower down" in found.advice

@@ -57,7 +57,7 @@ async def approach(run: FetchRun) -> Ended:
         try:
             blocked = await drive(run, leg)
         except TargetLost as lost:
-            return await _anew(run, steps_back=True) or Ended(Outcome.LOST, str(lost))
+            return await _anew(run, steps_back=True) or _lost(run, str(lost))
         if blocked and (ended := await back_off_from(run, blocked)):
             return ended
         await measure(run)
@@ -80,10 +80,8 @@ async def last_look(run: FetchRun) -> Ended:
     is_lost = _is_lost(run, BLIND_SD)
     if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := await _anew(run, steps_back=is_lost)):
         return anew
-    if is_lost and (doubtful := refused_unseen(run.thing(), run.filed_claw, _loss(run))):
-        return Ended(Outcome.CANNOT, doubtful)
     if is_lost:
-        return Ended(Outcome.LOST, f"lost the thing, {_known_to(run)}: {_loss(run)}")
+        return _lost(run, f"lost the thing, {_known_to(run)}: {_loss(run)}")
     await measure(run)
     if isinstance(run.size, NoSize):
         if anew := await _measured_anew(run):
@@ -97,6 +95,13 @@ async def last_look(run: FetchRun) -> Ended:
     if seen.verdict is Verdict.YES and not await looks_as_tapped(run):
         return Ended(Outcome.LOST, OTHER_COLOURS)
     return Ended(Outcome.DONE if seen.verdict is Verdict.YES else Outcome.CANNOT, in_words(seen))
+
+
+def _lost(run: FetchRun, why: str) -> Ended:
+    """Refuse what is lost and was doubtful, be it by one view; else it ends as lost."""
+    run.believe_one_view()
+    doubtful = refused_unseen(run.thing(), run.filed_claw, _loss(run))
+    return Ended(Outcome.CANNOT, doubtful) if doubtful else Ended(Outcome.LOST, why)
 
 
 def _from_elsewhere(run: FetchRun, seen: ReachPreview) -> Ended:

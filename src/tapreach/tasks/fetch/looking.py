@@ -29,7 +29,12 @@ from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.stepping_back import found_from_farther
 from tapreach.tasks.fetch.surroundings import to_plan_round
 from tapreach.tasks.fetch.thing import NoSize
-from tapreach.tasks.fetch.too_high import refused_by_sight, refused_unlocated, tap_within_reach_up_to
+from tapreach.tasks.fetch.too_high import (
+    refused_by_place,
+    refused_by_sight,
+    refused_unlocated,
+    tap_within_reach_up_to,
+)
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
@@ -69,9 +74,16 @@ def _is_free_and_seen(run: FetchRun) -> bool:
 async def _was_lost_early(run: FetchRun) -> bool:
     """Tell whether it was lost before much was known of its place, and is seen again."""
     locating = run.locating
-    if locating is None or locating.estimate is None or not locating.follower.loss:
+    if locating is None or locating.estimate is None or not locating.follower.loss or _is_too_high(run):
         return False
     return locating.estimate.relative_sd > _HARDLY_KNOWN and await tap_again(run) is not None
+
+
+def _is_too_high(run: FetchRun) -> bool:
+    """Tell whether a spot tapped, of however little known a place, is surely too high."""
+    thing = run.thing()
+    refused = refused_by_place(thing.point_in_world, thing.point_cov_in_world, run.filed_claw)
+    return run.memory.tap.box is None and refused is not None
 
 
 async def _look_once(run: FetchRun) -> Ended:
@@ -123,8 +135,7 @@ async def _within_reach_up_to(run: FetchRun, tap: Tap) -> float:
 def _not_located(ended: Ended, within: float, estimate: PointEstimate | None) -> Ended:
     """Refuse what is too high unless it is near; else it ends as it ended."""
     interval = estimate.range_interval_95 if estimate is not None else None
-    is_bounded = estimate is not None and estimate.status is Status.RANGE_BOUNDED_BELOW
-    high = refused_unlocated(within, interval[0]) if interval and is_bounded else refused_unlocated(within)
+    high = refused_unlocated(within, interval[0]) if interval else refused_unlocated(within)
     return Ended(Outcome.CANNOT, high) if high else ended
 
 

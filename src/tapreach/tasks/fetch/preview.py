@@ -207,7 +207,7 @@ def _judged(
     is_last_look: bool,
     judged: Judgement,
 ) -> ReachPreview:
-    if judged.verdict is not Verdict.YES:
+    if judged.verdict is not Verdict.YES or size.by_picture:
         judged = _too_high(thing, body) or judged
     if judged.grip is None and not judged.from_another_side:
         return ReachPreview(judged.verdict, judged.reason, judged.advice, size)
@@ -224,8 +224,8 @@ def _judged(
 
 
 def _too_high(thing: Thing, body: Body) -> Judgement | None:
-    """Return the refusal of what was tapped too high up and does not fit the claw as it was measured: the
-    outline of what stands on something is often that of both.
+    """Return the refusal of what was tapped too high up: where nobody drew it, the outline of what stands on
+    something is often that of both.
     """
     return refused_by_place(thing.point_in_world, thing.point_cov_in_world, body.claw)
 
