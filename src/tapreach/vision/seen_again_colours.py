@@ -3,7 +3,7 @@
 Sought is a box of its size that has its colours inside and not around it, in the region where it may be.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -21,7 +21,7 @@ _LEAST_HALF, _LEAST_STRIP = 4.0, 2.0
 """[px]"""
 _LEAST, _CLEARLY = 1.5, 0.4
 """Log odds by which its inside differs from what is around it, and by how much more than anywhere else."""
-_LEAST_COMMON = 0.3
+LEAST_COMMON = 0.3
 """So much its colours there have in common with those known (Bhattacharyya's coefficient): a white cup is not
 a red one with white dots, but a ball may show other stripes.
 """
@@ -47,6 +47,10 @@ class ExpectedBox:
     half_height: float
     scales: tuple[float, ...] = (1.0,)
 
+    def less_sure(self, times: float) -> "ExpectedBox":
+        """Return it with a place known so many times worse."""
+        return replace(self, covariance=times**2 * self.covariance)
+
     def box_at(self, pixel: FloatArray) -> PixelBox:
         """Return the box around the thing with its middle at a pixel (2,)."""
         u, v = map(float, pixel)
@@ -54,9 +58,12 @@ class ExpectedBox:
         return PixelBox(u - across, v - down, u + across, v + down)
 
 
-def box_by_colours(picture: Color, colours: OwnColours, there: ExpectedBox) -> PixelBox | None:
-    """Return the box around the thing; None where nothing within the expected region has its colours and
-    ends where it should, or two places do. Its middle lies on the picture, not always all of it.
+def box_by_colours(
+    picture: Color, colours: OwnColours, there: ExpectedBox, least_common: float = LEAST_COMMON
+) -> PixelBox | None:
+    """Return the box around the thing; None where nothing within the expected region has its colours, at
+    least `least_common` of them, and ends where it should, or two places do. Its middle lies on the picture,
+    not always all of it.
     """
     columns, rows, off = _places(picture, there)
     if not rows.size or not columns.size:
@@ -74,7 +81,7 @@ def box_by_colours(picture: Color, colours: OwnColours, there: ExpectedBox) -> P
         return None
     box = PixelBox(u - across, v - down, u + across, v + down)
     seen = own_colours(picture, box)
-    return box if seen is not None and seen.common(colours) > _LEAST_COMMON else None
+    return box if seen is not None and seen.common(colours) > least_common else None
 
 
 def _places(picture: Color, there: ExpectedBox) -> tuple[FloatArray, FloatArray, FloatArray]:

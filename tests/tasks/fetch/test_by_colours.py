@@ -44,6 +44,21 @@ def test_thing_measured_together_with_what_stands_beside_it_is_found_and_its_siz
     assert run.memory.known.size is None and run.memory.known.axis_offset is None
 
 
+def test_thing_farther_off_than_it_should_be_is_found_only_by_most_of_its_colours() -> None:
+    run = run_after_look((RED, RED, RED))
+    assert run.memory.known is not None
+    place = replace(run.memory.known.place, cov_in_world=0.004**2 * np.eye(3))
+    run.remember(known=replace(run.memory.known, place=place))
+    bumped = MIDDLE + np.array([0.0, 0.05, 0.0])
+    there = expected_box(run.memory.known, HERE, ROBOT)
+    assert (
+        there is not None and abs(there.pixel[0] - pixel_of(bumped)[0]) > 3.5 * there.covariance[0, 0] ** 0.5
+    )
+    assert tapped(run, frame(bumped, (60, 60, 150))) is None
+    tap = tapped(run, frame(bumped, RED))
+    assert tap is not None and abs(tap.u - pixel_of(bumped)[0]) < 15.0
+
+
 @pytest.mark.parametrize("seen", [frame(MIDDLE, GREEN), Frame(0, 0, 0, ROBOT.camera.model().size, b"")])
 def test_thing_of_another_colour_or_in_a_broken_picture_is_not_tapped(seen: Frame) -> None:
     run = run_after_look((RED, RED, RED))

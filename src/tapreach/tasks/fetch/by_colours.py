@@ -15,10 +15,14 @@ from tapreach.tasks.task import Tap
 from tapreach.vision.extent_place import place_to_follow
 from tapreach.vision.image_io import BrokenPicture, decode_color, decode_gray
 from tapreach.vision.own_colours import OwnColours, evidence, has_colours, own_colours
-from tapreach.vision.seen_again_colours import ExpectedBox, box_by_colours
+from tapreach.vision.seen_again_colours import LEAST_COMMON, ExpectedBox, box_by_colours
 
 _SURELY_ITS = 0.5
 """So much of the thing around a spot of it is its own."""
+_AS_KNOWN, _FARTHER_OFF = (1.0, LEAST_COMMON), (2.5, 0.6)
+"""How many times worse its place may be known, and how much of its colours it must have there: what is not
+where it should be is met farther off only with most of them, as a robot that bumped into something finds it.
+"""
 _SURELY_COMMON = 0.5
 """What has so much in common with the colours known shows the thing: Bhattacharyya's coefficient."""
 
@@ -71,12 +75,14 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
     known, description = run.memory.known, run.context.description
     if known is None or known.colours is None:
         return None
-    as_usual = [] if known.size is None else [replace(known, size=None, axis_offset=None)]
-    for supposed in (known, *as_usual):
+    as_usual = [] if known.size is None else [(replace(known, size=None, axis_offset=None), *_AS_KNOWN)]
+    for supposed, times, least in ((known, *_AS_KNOWN), *as_usual, (known, *_FARTHER_OFF)):
         there = expected_box(supposed, here, description)
         if there is None:
             continue
-        found = await run.context.compute.call(_found, frame.jpeg, known.colours, there)
+        found = await run.context.compute.call(
+            _found, frame.jpeg, known.colours, there.less_sure(times), least
+        )
         if found is None:
             continue
         if supposed is not known:
@@ -87,12 +93,14 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
     return None
 
 
-def _found(jpeg: bytes, colours: OwnColours, there: ExpectedBox) -> tuple[PixelBox, Pixel] | None:
+def _found(
+    jpeg: bytes, colours: OwnColours, there: ExpectedBox, least: float
+) -> tuple[PixelBox, Pixel] | None:
     """Return the box around it, and the place in it that is followed best."""
     picture, gray = decode_color(jpeg), decode_gray(jpeg)
     if isinstance(picture, BrokenPicture) or isinstance(gray, BrokenPicture):
         return None
-    box = box_by_colours(picture, colours, there)
+    box = box_by_colours(picture, colours, there, least)
     if box is None:
         return None
     shown = box.within(ImageSize(gray.shape[1], gray.shape[0]))
