@@ -6,22 +6,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tapreach.estimation.camera_step import camera_step
-from tapreach.estimation.rotation_from_background import rotation_from_background
 from tapreach.estimation.step_knowledge import NOTHING_SEEN
 from tapreach.geometry.pixel import Pixel
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.tasks.estimating import HeadingSource, estimate
-from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import SeenWay, Sighting, is_apart, ray_of, rays_of
 from tapreach.tasks.straightening import straightened
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap
 from tasks.rig import sim_description
+from tasks.seen_ways import pixels_of, seen_way
 
 ROBOT = sim_description()
-CAMERA, MOUNT = ROBOT.camera.model(), ROBOT.camera.mount.base_from_camera()
 SAID = [PlanarPose()]
 for step in (PlanarStep(0.2, 0.0), PlanarStep(0.0, 0.15), PlanarStep(0.0, 0.15)):
     SAID.append(SAID[-1].after(step))
@@ -37,20 +34,8 @@ def true_poses():
     return poses
 
 
-def pixels_of(points, pose):
-    return CAMERA.project((pose.to_rigid() * MOUNT).inv().apply(points))
-
-
-def seen_way(true, first, second):
-    rng = np.random.default_rng(2)
-    points = rng.uniform([0.6, -1.5, 0.0], [4.0, 2.5, 1.5], (900, 3))
-    before, now = pixels_of(points, true[first]), pixels_of(points, true[second])
-    both = before.is_inside & now.is_inside
-    step = camera_step(SAID[first].between(SAID[second]), odometry_noise(ROBOT), MOUNT, mount_noise(ROBOT))
-    found = rotation_from_background(
-        before.pixels[both] + 0.2 * rng.normal(size=(both.sum(), 2)), now.pixels[both], CAMERA, step
-    )
-    return SeenWay(first, found.knowledge)
+def way(true, first, second):
+    return seen_way((SAID[first], true[first]), (SAID[second], true[second]), first)
 
 
 def sightings(true, ways):
@@ -63,7 +48,7 @@ def sightings(true, ways):
 
 def with_background():
     true = true_poses()
-    return sightings(true, {index: seen_way(true, index - 1, index) for index in (1, 2, 3)})
+    return sightings(true, {index: way(true, index - 1, index) for index in (1, 2, 3)})
 
 
 def test_drift_that_the_wheels_hid_is_taken_out_and_the_newest_pose_stays():

@@ -5,6 +5,7 @@ stands.
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine, Iterable
 from dataclasses import replace
+from itertools import takewhile
 from math import radians
 from typing import Any, TypeVar
 
@@ -17,7 +18,7 @@ from tapreach.robot.clock import MS, SECOND
 from tapreach.robot.messages import Frame
 from tapreach.tasks import following
 from tapreach.tasks.frame_pose import pose_at
-from tapreach.tasks.sighting import Sighting, is_apart, sigma_of_timing
+from tapreach.tasks.sighting import Passed, Sighting, is_apart, sigma_of_timing
 from tapreach.tasks.target_watch import Shot
 from tapreach.tasks.task import Tap, TaskContext
 
@@ -26,6 +27,8 @@ T = TypeVar("T")
 _RATE_OVER_NS = 40 * MS
 _SKIP_DISTANCE, _SKIP_ANGLE = 0.02, radians(2.0)
 _LEAST_KEPT = 4
+_NEWEST_PASSED = 3
+"""Of what was passed unseen: so many agree on whether the wheels slip."""
 LATEST_NS = SECOND
 """Pictures later than this are taken for pictures of now."""
 
@@ -50,6 +53,7 @@ class Follower:
         self.frame_id = tap.frame_id
         """The newest frame that was looked at."""
         self.sightings: list[Sighting] = []
+        self._passed: list[Passed] = []
         self.weakness = ""
         self.loss = ""
         """Why it is not seen in the newest frame; '' while it is."""
@@ -67,6 +71,16 @@ class Follower:
     def last(self) -> Sighting:
         """The newest sighting."""
         return self.sightings[-1]
+
+    def way_since(self, frame_id: int) -> tuple[Sighting | Passed, ...]:
+        """Return what the way since a sighting was seen by, from the last key before it on; empty where that
+        sighting is not kept any more.
+        """
+        ids = [each.frame_id for each in self.sightings]
+        if frame_id not in ids:
+            return ()
+        keys = [i for i, each in enumerate(self.sightings[: ids.index(frame_id) + 1]) if each.is_key]
+        return (*self.sightings[keys[-1] if keys else ids.index(frame_id) :], *self._passed)
 
     async def open(self) -> Sighting:
         """Look up the tapped frame and begin. Raises FrameError, PoseError, InputError, PictureBroken."""
@@ -136,6 +150,7 @@ class Follower:
         self.doubt = checked.doubt
         if self.last.frame_id == self.frame_id:
             self.loss = ""
+            self._passed.clear()
 
     async def _follow_what_is_on_its_way(self) -> None:
         """Follow the frames that were taken before now, until the next one is from now on."""
@@ -164,9 +179,21 @@ class Follower:
             following.follow, self._key, shot, self.point_in_world, is_stop
         )
         self.loss = followed.loss
+        if followed.passed is not None:
+            self._pass(followed.passed)
         if followed.sighting is not None:
+            self._passed.clear()
             self._take(followed.sighting)
         return followed.sighting
+
+    def _pass(self, passed: Passed) -> None:
+        """Keep it, and of those since the last key the newest; of keys without a way between, the last."""
+        since_key = list(takewhile(lambda each: not each.is_key, reversed(self._passed)))
+        if len(since_key) >= _NEWEST_PASSED:
+            del self._passed[-len(since_key)]
+        if passed.way.reason and self._passed and self._passed[-1].is_key:
+            self._passed.pop()
+        self._passed.append(passed)
 
     def _take(self, sighting: Sighting) -> None:
         self.sightings.append(sighting)

@@ -28,7 +28,7 @@ from tapreach.tasks.locate_watch import BLOCKED, SLIPPING, MoveWatch, is_accurat
 from tapreach.tasks.move_choice import Choice, Room, planned_move
 from tapreach.tasks.online import Seen, online_picture
 from tapreach.tasks.planned_move import PlannedMove
-from tapreach.tasks.sighting import Sighting, ray_of
+from tapreach.tasks.sighting import Passed, Sighting, ray_of
 from tapreach.tasks.supposed_distance import supposed_distances
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.target_report import TargetReport
@@ -118,6 +118,12 @@ class Locating:
         return self._estimate
 
     @property
+    def way_since_seen(self) -> tuple[Sighting | Passed, ...]:
+        """By what the way since the newest sighting of the estimate was seen; see at_present."""
+        newest = self._estimate.sightings[-1] if self._estimate is not None else None
+        return () if newest is None else self._follower.way_since(newest.frame_id)
+
+    @property
     def follower(self) -> Follower:
         """What follows the tapped place."""
         return self._follower
@@ -175,7 +181,8 @@ class Locating:
         if is_behind and now_ns - self._renewed_ns < _RENEW_AT_LEAST_NS:
             return
         self._renewed_ns = now_ns
-        seen = Seen(self._sightings(), self._follower.last, self._follower.loss, self._here, self._known)
+        sightings, follower = self._sightings(), self._follower
+        seen = Seen(sightings, follower.last, follower.loss, self._here, self._known, self.way_since_seen)
         picture = await self._context.compute.call(online_picture, seen, self._report)
         if picture.estimate is not None:
             self._estimate = picture.estimate
@@ -372,7 +379,8 @@ class Locating:
         self._context.show_target(self._target(not self._follower.loss, self._follower.loss))
 
     def _target(self, is_following: bool, reason: str = "") -> Target:
-        return self._report.target(self._sightings(), self._estimate, is_following, reason, self._here)
+        seen, way = self._sightings(), self.way_since_seen
+        return self._report.target(seen, self._estimate, is_following, reason, self._here, way)
 
     def _say(self, phase: str, progress: float, message: str) -> None:
         self._context.report(TaskReport(phase, progress, message))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.estimating import LocatedPoint, estimate
 from tapreach.tasks.known_place import KnownPlace
-from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.sighting import Passed, Sighting
 from tapreach.tasks.target import Target
 from tapreach.tasks.target_report import TargetReport
 
@@ -25,6 +25,7 @@ class Seen:
 
     sightings: those that count, in the order of time. newest: the last one. loss: why the place is not seen
     in the newest frame, '' while it is. here: the base by the wheels. known: where it was by an earlier look.
+    way: see at_present.
     """
 
     sightings: Sequence[Sighting]
@@ -32,6 +33,7 @@ class Seen:
     loss: str
     here: PlanarPose
     known: KnownPlace | None = None
+    way: Sequence[Sighting | Passed] = ()
 
 
 def online_picture(seen: Seen, report: TargetReport) -> OnlinePicture:
@@ -46,5 +48,5 @@ def online_picture(seen: Seen, report: TargetReport) -> OnlinePicture:
     found = None
     if len(sightings) > 1 or seen.known is not None:
         found = estimate(sightings, report.description, False, is_unconfirmed, seen.known)
-    target = report.target(sightings, found, not seen.loss, seen.loss, seen.here)
+    target = report.target(sightings, found, not seen.loss, seen.loss, seen.here, seen.way)
     return OnlinePicture(found, target)

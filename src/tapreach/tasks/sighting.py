@@ -56,6 +56,16 @@ class Sighting:
     is_key: bool = False
 
 
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """A frame in which the target is not seen, but the way to it; fields as those of a sighting."""
+
+    frame_id: int
+    world_from_base: PlanarPose
+    way: SeenWay
+    is_key: bool
+
+
 def observation_of(
     sighting: Sighting, description: RobotDescription, base_from_camera: RigidTransform | None = None
 ) -> Observation:

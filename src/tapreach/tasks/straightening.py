@@ -12,7 +12,7 @@ from tapreach.estimation.odometry_noise import pose_errors
 from tapreach.estimation.step_knowledge import NOTHING_SEEN
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
-from tapreach.tasks.sighting import Sighting
+from tapreach.tasks.sighting import Passed, Sighting
 
 _HELPS = 0.7
 """The background helps where it brings the error of a heading below this share of the wheels' own."""
@@ -47,7 +47,7 @@ def straightened(
     """
     poses = [sighting.world_from_base for sighting in sightings]
     known = odometry_noise(description), description.camera.mount.base_from_camera(), mount_noise(description)
-    steps = _seen_steps(sightings, by_every_way)
+    steps = seen_steps(sightings, by_every_way)
     if slipped_since is not None:
         steps.append(_unseen_slip(slipped_since, len(sightings) - 1))
     corrected = corrected_drive(poses, *known, steps)
@@ -64,8 +64,8 @@ def straightened(
     return Straightened(straight, corrected.base_from_camera, corrected.errors, reason)
 
 
-def _seen_steps(sightings: Sequence[Sighting], by_every_way: bool) -> list[SeenStep]:
-    """Return what to believe of the ways seen from each key."""
+def seen_steps(sightings: Sequence[Sighting | Passed], by_every_way: bool = False) -> list[SeenStep]:
+    """Return what to believe of the ways seen from each key, by the numbers of the sightings."""
     number = {sighting.frame_id: i for i, sighting in enumerate(sightings)}
     ways: dict[int, list[SeenStep]] = {}
     for i, sighting in enumerate(sightings):

@@ -14,7 +14,7 @@ from tapreach.robot.config import RobotDescription
 from tapreach.tasks.estimating import HeadingSource, LocatedPoint
 from tapreach.tasks.extent import extent_of
 from tapreach.tasks.present_base import PresentPoint, at_present
-from tapreach.tasks.sighting import Sighting, rays_of
+from tapreach.tasks.sighting import Passed, Sighting, rays_of
 from tapreach.tasks.target import Target, TargetSource
 from tapreach.tasks.task import Tap
 
@@ -37,17 +37,18 @@ class TargetReport:
         is_following: bool,
         reason: str = "",
         here: PlanarPose | None = None,
+        way: Sequence[Sighting | Passed] = (),
     ) -> Target:
         """Return the target as it stands; `reason` replaces the estimate's own.
 
-        here: the base by the wheels, where it has moved on since the newest sighting.
+        here: the base by the wheels, where it has moved on since the newest sighting. way: see at_present.
         """
         here = sightings[-1].world_from_base if here is None else here
         present = None
         if isinstance(estimate, LocatedPoint):
             sightings = estimate.sightings
-            present = at_present(estimate, here, self.description)
-        point = estimate.point_in_world if estimate is not None else None
+            present = at_present(estimate, here, self.description, way)
+        point = _point(estimate, present)
         rays = rays_of(sightings, self.description)
         return Target(
             target_id=self.target_id,
@@ -66,6 +67,12 @@ class TargetReport:
             is_following=is_following,
             extent=extent_of(self.tap.box, sightings[0], estimate, self.description),
         )
+
+
+def _point(estimate: PointEstimate | None, present: PresentPoint | None) -> FloatArray | None:
+    if present is not None:
+        return present.point_in_world
+    return estimate.point_in_world if estimate is not None else None
 
 
 def _covariance(estimate: PointEstimate | None, present: PresentPoint | None) -> FloatArray | None:

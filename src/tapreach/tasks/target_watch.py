@@ -14,7 +14,7 @@ from tapreach.tasks.depth_check import Checked
 from tapreach.tasks.depth_views import DepthViews
 from tapreach.tasks.distance_range import DistanceRange
 from tapreach.tasks.guessing import guesses_for
-from tapreach.tasks.sighting import TAP_SIGMA, SeenWay, Sighting, is_apart, ray_of
+from tapreach.tasks.sighting import TAP_SIGMA, Passed, SeenWay, Sighting, is_apart, ray_of
 from tapreach.vision.image_io import Gray
 from tapreach.vision.track import Guess, TrackStatus
 from tapreach.vision.tracker import PatchTracker
@@ -42,10 +42,13 @@ class Shot:
 
 @dataclass(frozen=True, slots=True)
 class Followed:
-    """What a frame showed. sighting: None when the place is not seen, and `loss` then says why."""
+    """What a frame showed. sighting: None when the place is not seen, and `loss` then says why; passed: the
+    way to there, where it was measured all the same.
+    """
 
     sighting: Sighting | None
     loss: str
+    passed: Passed | None = None
 
 
 class TargetWatch:
@@ -98,7 +101,7 @@ class TargetWatch:
         there = self._with_way(there, picture, is_stop, is_seen)
         self._views.keep(there, picture, shot.moved_px, is_seen, is_stop)
         if not is_seen:
-            return Followed(None, loss)
+            return Followed(None, loss, _passed(there))
         self._distances.note(there)
         self.last = there
         return Followed(there, loss)
@@ -132,8 +135,8 @@ class TargetWatch:
         return float(np.linalg.norm(point_in_world - ray_of(self.last, self._description).origin))
 
     def _with_way(self, seen: Sighting, picture: Gray, is_stop: bool, is_seen: bool) -> Sighting:
-        """Return the sighting with what the background says of it, which may make it the next key if the
-        place `is_seen` there.
+        """Return the sighting with what the background says of it, which may make it the next key: a stop if
+        the place `is_seen` there, and any where little is left of the last one, or unseen all is.
         """
         if self._background is None:
             return seen
@@ -142,7 +145,15 @@ class TargetWatch:
             return seen
         way: SeenWay | None = self._background.way_to(seen.world_from_base)
         self._measured_at = seen.world_from_base
-        is_key = is_seen and (is_stop or self._background.is_thin)
+        is_useless = not is_seen and way is not None and bool(way.reason)
+        is_key = self._background.is_thin or is_useless or (is_stop and is_seen)
         if is_key:
             self._background.renew(picture, seen.frame_id, seen.world_from_base)
         return replace(seen, way=way, is_key=is_key)
+
+
+def _passed(seen: Sighting) -> Passed | None:
+    """Return what is left of a sighting without its target."""
+    if seen.way is None:
+        return None
+    return Passed(seen.frame_id, seen.world_from_base, seen.way, seen.is_key)

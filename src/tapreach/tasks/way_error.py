@@ -24,8 +24,14 @@ def by_way(
     if not is_apart(start, here, *_AT_REST):
         return np.zeros((3, 3))
     way_errors = pose_errors([start, here], odometry_noise(description))[1]
-    # An error (x, y, heading) of the present base moves what stands still the other way.
+    moved_by = moved_by_base(point, here) @ way_errors
+    return np.asarray(moved_by @ moved_by.T)
+
+
+def moved_by_base(point: FloatArray, here: PlanarPose) -> FloatArray:
+    """Return (3, 3): how a `point` (3,) [m] that stands still moves in the world in which a base at `here` is
+    exact, per error (x, y, heading) of that base: the other way.
+    """
     c, s = math.cos(here.heading), math.sin(here.heading)
     aside, ahead = point[1] - here.y, point[0] - here.x
-    moved_by = np.array([[-c, s, aside], [-s, -c, -ahead], [0.0, 0.0, 0.0]]) @ way_errors
-    return np.asarray(moved_by @ moved_by.T)
+    return np.array([[-c, s, aside], [-s, -c, -ahead], [0.0, 0.0, 0.0]])

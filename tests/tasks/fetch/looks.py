@@ -60,6 +60,8 @@ class Followed:
 class Located:
     """What a locating that has ended is to a fetch."""
 
+    way_since_seen = ()
+
     def __init__(self, follower: Followed) -> None:
         self.follower, self.estimate = follower, estimate(follower.sightings, ROBOT, False)
 

@@ -42,6 +42,8 @@ SEEN = Appearance(b"", Pixel(320.0, 240.0), 0.5)
 class Located:
     """What a locating that has ended is to a fetch."""
 
+    way_since_seen = ()
+
     def __init__(self, found: LocatedPoint) -> None:
         self.estimate = found
 

@@ -9,6 +9,7 @@ from tapreach.errors import TapreachError
 from tapreach.estimation.footprint import SeenWidth
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
+from tapreach.tasks.estimating import LocatedPoint
 from tapreach.tasks.fetch.arm_watch import ArmWatch
 from tapreach.tasks.fetch.arm_workspace import ArmWorkspace
 from tapreach.tasks.fetch.claw_room import Claw
@@ -21,7 +22,7 @@ from tapreach.tasks.fetch.surroundings import SeenAround
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tapreach.tasks.fetch.ways import Ways
 from tapreach.tasks.locate import Locating
-from tapreach.tasks.present_base import at_present
+from tapreach.tasks.present_base import PresentPoint, at_present
 from tapreach.tasks.task import TaskContext
 
 
@@ -94,13 +95,17 @@ class FetchRun:
     def _place(self) -> tuple[FloatArray, FloatArray]:
         """Return where the tapped spot is in the world (3,) [m], with its covariance (3, 3) [m²]."""
         estimate = self.locating.estimate if self.locating is not None else None
-        present = None if estimate is None else at_present(estimate, self.here, self.context.description)
+        present = None if estimate is None else self._at_present(estimate)
         if present is not None:
             return present.point_in_world, present.cov_in_world
         if self.memory.known is None:
             raise NotKnown("the thing has no position yet: locate it first")
         place = self.memory.known.place.seen_from(self.here, self.context.description)
         return place.point_in_world, place.cov_in_world
+
+    def _at_present(self, estimate: LocatedPoint) -> PresentPoint | None:
+        assert self.locating is not None
+        return at_present(estimate, self.here, self.context.description, self.locating.way_since_seen)
 
     def axis_in_world(self) -> FloatArray:
         """Return the thing's middle (3,) [m]. Raises NotKnown before it was measured."""
