@@ -10,7 +10,8 @@ import pytest
 from tapreach.errors import InputError
 from tapreach.estimation.footprint import SeenWidth
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
-from tapreach.tasks.fetch.preview import OTHER_SIDES, preview, supposed_size
+from tapreach.tasks.fetch.believed_size import supposed_size
+from tapreach.tasks.fetch.preview import OTHER_SIDES, preview
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tasks.fetch.worlds import ROBOT, obstacle_at, thing_at

@@ -13,8 +13,8 @@ from tapreach.tasks.fetch.followed_from_here import follow_from_here, has_grown
 from tapreach.tasks.fetch.glance import glance
 from tapreach.tasks.fetch.looking import ACCURACY, MOST_LOOKS, in_words, measure, previewed
 from tapreach.tasks.fetch.looking_again import still_followed, tap_again, tap_unseen
-from tapreach.tasks.fetch.preview import ReachPreview
 from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.reach_preview import ReachPreview
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.stepping_back import BACK, LEAST_BACK, found_from_farther

@@ -21,8 +21,9 @@ from tapreach.tasks.fetch.looking_again import (
     tap_again,
     tap_unseen,
 )
-from tapreach.tasks.fetch.preview import ReachPreview, preview
+from tapreach.tasks.fetch.preview import preview
 from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.reach_preview import ReachPreview
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.size import size_of
 from tapreach.tasks.fetch.states import Outcome

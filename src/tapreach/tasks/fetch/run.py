@@ -16,7 +16,7 @@ from tapreach.tasks.fetch.claw_room import Claw
 from tapreach.tasks.fetch.kept_size import SizeDoubt, with_earlier
 from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.obstacle import Obstacle
-from tapreach.tasks.fetch.preview import ReachPreview
+from tapreach.tasks.fetch.reach_preview import ReachPreview
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.surroundings import SeenAround
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize

@@ -1,7 +1,7 @@
 """What is lost from sight and was doubtful when it was last measured: unseen, nothing settles it."""
 
+from tapreach.tasks.fetch.believed_size import WIDTH_TOLD
 from tapreach.tasks.fetch.claw_room import Claw
-from tapreach.tasks.fetch.preview import WIDTH_TOLD
 from tapreach.tasks.fetch.reach import OFF_FLOOR, Verdict, judge
 from tapreach.tasks.fetch.thing import NoSize, Thing
 
