@@ -42,8 +42,15 @@ static bool stop_is_pulled() {
 #endif
 }
 
+// Going to sleep begins a conversion of the channel that was read last: it is left to end first, or it would be taken
+// for that of another.
+static uint16_t read_analog(uint8_t channel) {
+  loop_until_bit_is_clear(ADCSRA, ADSC);
+  return uint16_t(analogRead(channel));
+}
+
 static uint16_t battery_mv() {
-  return uint16_t(uint32_t(analogRead(pins::BATTERY)) * (5000UL * BATTERY_DIVIDER) / 1023);
+  return uint16_t(uint32_t(read_analog(pins::BATTERY)) * (5000UL * BATTERY_DIVIDER) / 1023);
 }
 
 static void send(const uint8_t* bytes, uint8_t count) {
@@ -55,7 +62,7 @@ static void send(const uint8_t* bytes, uint8_t count) {
 
 static void set_led(bool is_on) { digitalWrite(pins::LED, is_on); }
 static uint32_t now_us() { return micros(); }
-static int16_t analog(uint8_t channel) { return channel < NUM_ANALOG_INPUTS ? int16_t(analogRead(channel)) : -1; }
+static int16_t analog(uint8_t channel) { return channel < NUM_ANALOG_INPUTS ? int16_t(read_analog(channel)) : -1; }
 static int8_t digital(uint8_t pin) { return pin < NUM_DIGITAL_PINS ? int8_t(level(pin)) : -1; }
 
 static uint16_t features() {

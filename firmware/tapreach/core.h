@@ -47,6 +47,9 @@ class Core {
     return true;
   }
 
+  // Whether the next period of control begins within `us`.
+  bool is_due_within(uint16_t us) const { return since(due_us_, hardware_.micros()) <= int32_t(us); }
+
   const Robot& robot() const { return robot_; }
   uint16_t bad_frames() const { return uint16_t(frames_.bad_frames + commands_.refused_frames); }
   bool is_open() const { return commands_.is_open(); }

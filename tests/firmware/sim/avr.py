@@ -52,6 +52,11 @@ class Avr:
     def now_us(self) -> float:
         return self._lib.bed_now_us(self._bed)
 
+    @property
+    def asleep_us(self) -> float:
+        """How long the processor has slept in all."""
+        return self._lib.bed_asleep_us(self._bed)
+
     def run(self, us: float) -> None:
         self.run_to(self.now_us + us)
 

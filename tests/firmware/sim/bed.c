@@ -64,6 +64,7 @@ typedef struct bed {
   uint8_t driven[PORTS], driven_high[PORTS]; /* pins that are driven from outside */
   encoder_t encoders[ENCODERS];
   avr_int_vector_t port_k_change;
+  uint64_t asleep;     /* cycles */
   uint64_t deaf_until; /* cycle; encoders are not heard before */
   uint16_t kept_word; /* what `bed_stall` wrote over */
   uint32_t stalled_at;
@@ -95,7 +96,9 @@ static void on_output(avr_irq_t *irq, uint32_t value, void *param) {
   (void)irq;
   bed_t *bed = param;
   put(&bed->out, value);
-  if (value == 0) bed->stopped_on_zero = 1;
+  if (value != 0) return;
+  bed->stopped_on_zero = 1;
+  bed->avr->run_cycle_count = 1; /* `bed_run_to` looks after this instruction */
 }
 
 static void set_level(bed_t *bed, pin_t *pin, int level) {
@@ -178,6 +181,9 @@ static void start_encoder(encoder_t *encoder) {
   avr_cycle_timer_register(avr, wait, on_edge, encoder);
 }
 
+/* A processor that sleeps goes to the next event at once; simavr's own callback would wait in real time. */
+static void no_wait(avr_t *avr, avr_cycle_count_t cycles) { (void)avr, (void)cycles; }
+
 static void only_errors(avr_t *avr, const int level, const char *format, va_list words) {
   (void)avr;
   if (level <= LOG_ERROR) vfprintf(stderr, format, words);
@@ -220,6 +226,7 @@ bed_t *bed_open(const char *elf, const char *mcu, uint32_t hz, char uart) {
   avr_init(bed->avr);
   avr_load_firmware(bed->avr, &firmware);
   bed->avr->log = LOG_ERROR;
+  bed->avr->sleep = no_wait;
   bed->avr->frequency = hz;
   bed->avr->vcc = bed->avr->avcc = bed->avr->aref = 5000;
   bed->uart = uart;
@@ -236,20 +243,30 @@ void bed_close(bed_t *bed) {
   free(bed);
 }
 
+static avr_cycle_count_t on_end(avr_t *avr, avr_cycle_count_t when, void *param) {
+  (void)avr, (void)when, (void)param;
+  return 0;
+}
+
 /* Runs to a time; with `until_zero` only to the next 0x00 that comes out. Returns 0, or 1 when the processor died. */
 int bed_run_to(bed_t *bed, double us, int until_zero) {
   double cycles = cycles_of(bed, us);
   uint64_t end = (uint64_t)cycles;
   if (end < cycles) end++; /* never short of the time that was asked for */
   bed->stopped_on_zero = 0;
+  bed->avr->run_cycle_limit = end; /* simavr looks at its timers when one is due, not after each instruction */
+  if (end > bed->avr->cycle) avr_cycle_timer_register(bed->avr, end - bed->avr->cycle, on_end, bed);
   feed(bed);
   while (bed->avr->cycle < end && !(until_zero && bed->stopped_on_zero)) {
+    uint64_t before = bed->avr->cycle;
     int state = avr_run(bed->avr);
+    if (state == cpu_Sleeping) bed->asleep += bed->avr->cycle - before;
     if (state == cpu_Done || state == cpu_Crashed) return 1;
   }
   return 0;
 }
 double bed_now_us(bed_t *bed) { return us_of(bed, bed->avr->cycle); }
+double bed_asleep_us(bed_t *bed) { return us_of(bed, bed->asleep); }
 
 void bed_send(bed_t *bed, const uint8_t *bytes, int count) {
   for (int i = 0; i < count; i++) put(&bed->in, bytes[i]);

@@ -17,6 +17,7 @@ SIGNATURES = {
     "bed_close": (None, (c_void_p,)),
     "bed_run_to": (c_int, (c_void_p, c_double, c_int)),
     "bed_now_us": (c_double, (c_void_p,)),
+    "bed_asleep_us": (c_double, (c_void_p,)),
     "bed_send": (None, (c_void_p, c_char_p, c_int)),
     "bed_unsent": (c_int, (c_void_p,)),
     "bed_drop_unsent": (None, (c_void_p,)),
