@@ -68,6 +68,11 @@ class CameraSection(Section):
         description="how far a picture's time may be off against the wheels', one sigma; from 2 ms on it is "
         "measured at the first locating",
     )
+    keeps_settings: bool = Field(
+        False,
+        description="v4l2: exposure, gain, white balance and focus that were set by hand stay so; else what "
+        "the camera has automatic of itself is switched on at opening",
+    )
     mount: MountSection
 
     @field_validator("source")

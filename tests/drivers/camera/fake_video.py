@@ -11,9 +11,10 @@ from tapreach.drivers.camera import v4l2_abi as abi
 class FakeVideo:
     """See Device. `fill` puts a picture into the oldest empty buffer, as a driver does."""
 
-    def __init__(self, formats=("YUYV", "MJPG"), size=(160, 120), controls=None) -> None:
+    def __init__(self, formats=("YUYV", "MJPG"), size=(160, 120), controls=None, usual=None) -> None:
         self.formats, self.size = formats, size
         self.controls = dict(controls or {})
+        self.usual = dict(self.controls if usual is None else usual)
         self.capabilities = abi.CAN_CAPTURE | abi.CAN_STREAM
         self.buffers: list[bytearray] = []
         self.empty: list[int] = []
@@ -106,6 +107,7 @@ class FakeVideo:
     def _queryctrl(self, it) -> None:
         if it.id not in self.controls:
             raise _error(errno.EINVAL)
+        it.default_value = self.usual[it.id]
 
     def _g_ctrl(self, it) -> None:
         it.value = self.controls[it.id]

@@ -29,9 +29,9 @@ CONTROLS = {
 }  # fmt: skip
 
 
-def opened(device, clock=None, delay_ns=0, hold=None) -> V4l2Stream:
+def opened(device, clock=None, delay_ns=0, hold=None, keeps_settings=False) -> V4l2Stream:
     clock, hold = clock or ManualClock(100 * SECOND), hold or Hold()
-    stream = V4l2Stream("/dev/video0", clock, delay_ns, SIZE, 30.0, hold, lambda path: device)
+    stream = V4l2Stream("/dev/video0", clock, delay_ns, SIZE, 30.0, hold, lambda path: device, keeps_settings)
     stream.open()
     return stream
 
@@ -137,13 +137,33 @@ def test_exposure_and_white_balance_are_held_where_they_stand_and_released():
     assert device.written[len(held) :] == [(EXPOSURE_AUTO, 3), (PRIORITY, 1), (WHITE_AUTO, 1)]
 
 
-def test_what_is_by_hand_already_stays_as_its_owner_set_it():
+def test_what_a_camera_has_by_hand_of_itself_stays_so():
     device = FakeVideo(controls={EXPOSURE_AUTO: 1, EXPOSURE: 80})
     hold = Hold(is_wanted=True)
     stream = opened(device, hold=hold)
     device.fill(jpeg(1), 99 * SECOND)
     stream.read()
     stream.close()
+    assert device.written == []
+
+
+LEFT_BEHIND = CONTROLS | {EXPOSURE_AUTO: 1, PRIORITY: 0, FOCUS_AUTO: 0, WHITE_AUTO: 0}
+"""By a program that was killed while it held them."""
+
+
+def test_what_a_killed_program_held_is_automatic_again():
+    device = FakeVideo(controls=LEFT_BEHIND, usual=CONTROLS)
+    stream = opened(device)
+    assert device.controls == CONTROLS | {FOCUS_AUTO: 0}
+    stream.close()
+    assert device.controls == CONTROLS
+
+
+def test_what_a_killed_program_held_stays_where_the_robot_file_keeps_settings():
+    device = FakeVideo(controls=LEFT_BEHIND, usual=CONTROLS)
+    stream = opened(device, keeps_settings=True)
+    stream.close()
+    assert device.controls == LEFT_BEHIND
     assert device.written == []
 
 

@@ -31,7 +31,10 @@ def _stream_maker(
     delay_ns = round(section.delay_ms * MS)
     size = ImageSize(section.width, section.height)
     if source.kind is SourceKind.V4L2:
-        return lambda: V4l2Stream(source.address, clock, delay_ns, size, section.rate_hz, hold)
+        keeps = section.keeps_settings
+        return lambda: V4l2Stream(
+            source.address, clock, delay_ns, size, section.rate_hz, hold, keeps_settings=keeps
+        )
     if source.kind is SourceKind.HTTP:
         return lambda: MjpegStream(source, clock, delay_ns)
     return lambda: _rtsp_stream(source, clock, delay_ns)

@@ -1,5 +1,6 @@
 """Exposure, white balance and focus of a V4L2 camera: held where they are, and let go again."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tapreach.drivers.camera.v4l2_abi import (
@@ -33,6 +34,14 @@ VARYING = (
 )
 
 
+def switch_on(device: Device, automatics: Iterable[Automatic]) -> None:
+    """Switch on those that the camera has on when plugged in; a program that was killed left them off."""
+    for automatic in automatics:
+        usual, value = _usual(device, automatic.control), _read(device, automatic.control)
+        if value == automatic.by_hand and usual is not None and usual != value:
+            _write(device, automatic.control, usual)
+
+
 class HeldControls:
     """Automatics that were switched to "by hand", each with the value that it had before."""
 
@@ -42,38 +51,51 @@ class HeldControls:
 
     def hold(self, automatic: Automatic) -> bool:
         """Keep what the automatic has found; False where the camera has no such automatic or it is off."""
-        before = self._read(automatic.control)
+        before = _read(self._device, automatic.control)
         if before is None or before == automatic.by_hand:
             return False
-        found = None if automatic.sets is None else self._read(automatic.sets)
-        if not self._write(automatic.control, automatic.by_hand):
+        found = None if automatic.sets is None else _read(self._device, automatic.sets)
+        if not _write(self._device, automatic.control, automatic.by_hand):
             return False
         self._before.setdefault(automatic.control, before)
         # Some cameras go back to what was last set by hand.
         if automatic.sets is not None and found is not None:
-            self._write(automatic.sets, found)
+            _write(self._device, automatic.sets, found)
         return True
 
     def release(self) -> None:
         """Switch the automatics on again."""
         for control, value in self._before.items():
-            self._write(control, value)
+            _write(self._device, control, value)
         self._before.clear()
 
-    def _read(self, control: int) -> int | None:
-        description, value = ControlDescription(id=control), Control(id=control)
-        try:
-            self._device.ioctl(QUERYCTRL, description)
-            if description.flags & (CONTROL_DISABLED | CONTROL_READ_ONLY):
-                return None
-            self._device.ioctl(G_CTRL, value)
-        except OSError:  # the camera does not have it
-            return None
-        return int(value.value)
 
-    def _write(self, control: int, value: int) -> bool:
-        try:
-            self._device.ioctl(S_CTRL, Control(id=control, value=value))
-        except OSError:  # a camera that refuses goes on as it was
-            return False
-        return True
+def _usual(device: Device, control: int) -> int | None:
+    """Return the value that the driver gives a control at first; None where there is no such control."""
+    description = ControlDescription(id=control)
+    try:
+        device.ioctl(QUERYCTRL, description)
+    except OSError:
+        return None
+    return (
+        None if description.flags & (CONTROL_DISABLED | CONTROL_READ_ONLY) else int(description.default_value)
+    )
+
+
+def _read(device: Device, control: int) -> int | None:
+    value = Control(id=control)
+    if _usual(device, control) is None:
+        return None
+    try:
+        device.ioctl(G_CTRL, value)
+    except OSError:
+        return None
+    return int(value.value)
+
+
+def _write(device: Device, control: int, value: int) -> bool:
+    try:
+        device.ioctl(S_CTRL, Control(id=control, value=value))
+    except OSError:  # a camera that refuses goes on as it was
+        return False
+    return True

@@ -27,7 +27,7 @@ from tapreach.drivers.camera.v4l2_abi import (
     BufferType,
     RequestBuffers,
 )
-from tapreach.drivers.camera.v4l2_controls import FOCUS, VARYING, HeldControls
+from tapreach.drivers.camera.v4l2_controls import FOCUS, VARYING, HeldControls, switch_on
 from tapreach.drivers.camera.v4l2_device import Device, VideoDevice
 from tapreach.drivers.camera.v4l2_format import as_jpeg, choose_format
 from tapreach.errors import DriverError, SetupError
@@ -49,7 +49,8 @@ class V4l2Stream:
     """See Stream. A picture was taken `delay_ns` before the driver's monotonic stamp, where it gives one.
 
     The focus is fixed as long as the stream is open, since the focal length changes with it; exposure, gain
-    and white balance while `hold.is_wanted`.
+    and white balance while `hold.is_wanted`. With `keeps_settings` what was set by hand stays so; else
+    what the camera has automatic of itself is switched on at opening.
     """
 
     def __init__(
@@ -61,10 +62,11 @@ class V4l2Stream:
         rate_hz: float,
         hold: Hold,
         open_device: Callable[[str], Device] = VideoDevice,
+        keeps_settings: bool = False,
     ) -> None:
         self._path, self._clock, self._delay_ns = path, clock, delay_ns
         self._size, self._rate_hz, self._hold = size, rate_hz, hold
-        self._open_device = open_device
+        self._open_device, self._keeps_settings = open_device, keeps_settings
         self._device: Device | None = None
         self._memory: list[mmap.mmap | bytearray] = []
         self._format = ""
@@ -78,6 +80,8 @@ class V4l2Stream:
         try:
             self._device = self._open_device(self._path)
             self._format = choose_format(self._device, self._size, self._rate_hz)
+            if not self._keeps_settings:
+                switch_on(self._device, (FOCUS, *VARYING))
             self._focus = HeldControls(self._device)
             self._focus.hold(FOCUS)
             self._begin(self._device)
