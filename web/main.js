@@ -124,6 +124,7 @@ function joinControl() {
   });
   on(control, "state", (/** @type {import("./net/messages.js").State} */ state) => {
     situation.learn({ state });
+    taskPanel.showOwnMove(state.own_move);
     drawPlan();
   });
   on(control, "task", (/** @type {import("./net/messages.js").TaskView} */ task) => taskPanel.show(task));

@@ -90,6 +90,22 @@ def test_turn_and_advance_are_one_command_each_and_no_drive_comes_between():
     play(scenario)
 
 
+def test_base_tells_how_far_the_boards_move_is_until_it_has_ended():
+    async def scenario(rig):
+        base, told = rig.robot.base, []
+        assert base.own_move is None
+        await rig.start(rig.pilot.move(PlanarStep(0.5, 0.2)))
+        while not rig.task.done():
+            told += [base.own_move.fraction] if base.own_move else []
+            await rig.pass_time(20 * MS)
+        assert told == sorted(told)
+        assert told[0] < 0.05 and told[-1] > 0.95
+        assert len(set(told)) > 20
+        assert base.own_move is None
+
+    play(scenario)
+
+
 def test_share_slows_the_board_down():
     async def scenario(rig):
         await rig.start(rig.pilot.advance(0.1))

@@ -31,6 +31,7 @@ def first_state() -> Json:
         "server_ns": 0,
         "sent": {"linear": 0.0, "angular": 0.0},
         "limited_by": "",
+        "own_move": None,
         "odometry": {
             "x": 0.31,
             "y": -0.02,

@@ -165,6 +165,18 @@ def test_move_is_shown_with_what_it_should_bring_until_it_is_over(server, open_p
     page.wait_for_function(f"({GREEN})('plan') === 0")
 
 
+def test_how_far_a_move_of_the_robots_own_is_stands_with_the_task_while_it_lasts(server, open_page):
+    page = open_page()
+    task = {"type": "task", "task_id": 1, "kind": "locate", "state": "running", "phase": "move"}
+    server.push(task | {"progress": 0.25, "message": "driving 0.30 m forward"})
+    page.wait_for_selector("#task:not([hidden])")
+    assert page.locator("#task-move").is_hidden()
+    server.change(own_move=0.437)
+    page.wait_for_selector("#task-move:text-is('43 % of this move')")
+    server.change(own_move=None)
+    page.wait_for_selector("#task-move", state="hidden")
+
+
 def test_path_is_drawn_where_the_frames_meta_puts_it(server, open_page):
     page = open_page()
     assert page.evaluate(GREEN, "picture") == 0

@@ -331,6 +331,7 @@ export const PROTOCOL_VERSION = 1;
  * @property {number} server_ns
  * @property {TwistView} sent what really went to the wheels last
  * @property {string} limited_by why less was sent than wished, '' when not
+ * @property {number | null} own_move how much of the move that the robot makes by itself is done, 0 to 1; null: none
  * @property {OdometryView | null} odometry
  * @property {ArmView | null} arm
  * @property {LeaseView} lease

@@ -44,10 +44,16 @@ export class TaskPanel {
     setText(byId("task-expects"), words && `expects ${words}`);
   }
 
+  /** How far the robot is with a move that it makes by itself. @param {number | null} done from 0 to 1 */
+  showOwnMove(done) {
+    byId("task-move").hidden = done === null;
+    if (done !== null) setText(byId("task-move"), `${Math.floor(100 * done)} % of this move`);
+  }
+
   /** A lost connection ends what the page knows of a task. */
   clear() {
     this.task = this.move = null;
-    byId("task").hidden = byId("task-expects").hidden = true;
+    byId("task").hidden = byId("task-expects").hidden = byId("task-move").hidden = true;
   }
 
   /** @param {TaskView} task */

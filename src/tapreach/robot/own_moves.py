@@ -50,6 +50,11 @@ class OwnMove(Protocol):
 class MovesByItself(Protocol):
     """What a robot's base also offers where its board can move by itself."""
 
+    @property
+    def own_move(self) -> OwnMove | None:
+        """The move that is under way; None while there is none."""
+        ...
+
     def drive_by(self, step: PlanarStep, share: float = 1.0) -> OwnMove:
         """Begin a turn and an advance after it; what was done comes as odometry.
 

@@ -262,6 +262,9 @@ class State(Message):
     server_ns: int
     sent: TwistView = Field(description="what really went to the wheels last")
     limited_by: str = Field(description="why less was sent than wished, '' when not")
+    own_move: float | None = Field(
+        None, description="how much of the move that the robot makes by itself is done, 0 to 1; null: none"
+    )
     odometry: OdometryView | None
     arm: ArmView | None
     lease: LeaseView

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING
 
+from tapreach.robot.interface import Base
+from tapreach.robot.own_moves import MovesByItself
 from tapreach.server.message_parts import LeaseView
 from tapreach.server.messages import State
 from tapreach.server.views import arm_view, odometry_view, twist_view
@@ -24,6 +26,7 @@ class StateView:
             server_ns=station.clock.now_ns(),
             sent=twist_view(station.loop.sent.twist),
             limited_by=station.loop.sent.limited_by,
+            own_move=_done_of_own_move(station.robot.base),
             odometry=odometry_view(senses.odometry) if senses.odometry else None,
             arm=arm_view(senses.arm) if senses.arm else None,
             lease=self._lease(),
@@ -43,3 +46,8 @@ class StateView:
             asked_by_id=status.asked_by_id,
             asked_by_name=guests.name_of(status.asked_by_id),
         )
+
+
+def _done_of_own_move(base: Base) -> float | None:
+    move = base.own_move if isinstance(base, MovesByItself) else None
+    return None if move is None else move.fraction

@@ -60,6 +60,12 @@ class BoardBase:
         self._send(allowed)
         return allowed if twist.is_zero or (self._obeys and not ended) else STILL
 
+    @property
+    def own_move(self) -> BoardMove | None:
+        """See MovesByItself."""
+        is_moving = self._move is not None and self._move.status is MoveStatus.MOVING
+        return self._move if is_moving else None
+
     def drive_by(self, step: PlanarStep, share: float = 1.0) -> RelativeMove:
         """See MovesByItself."""
         telemetry = self._require_ready()
@@ -78,7 +84,7 @@ class BoardBase:
 
     def _require_ready(self) -> Telemetry:
         self._require_link()
-        if self._move is not None and self._move.status is MoveStatus.MOVING:
+        if self.own_move is not None:
             raise DriverError("another move is not finished: cancel it first")
         if self._telemetry is None or self._telemetry.state is not State.READY:
             state = self._telemetry.state.name.lower() if self._telemetry else "unknown"
