@@ -8,6 +8,7 @@ from tapreach.geometry.pixel import ImageSize
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.clock import SECOND, Clock
 from tapreach.robot.config import RobotDescription
+from tapreach.robot.driver_robot import DriverRobot
 from tapreach.robot.interface import Listeners, Unsubscribe
 from tapreach.robot.messages import (
     STILL,
@@ -96,7 +97,7 @@ class PatternCamera:
         self._listeners.tell(Frame(self._frame_id, now_ns, now_ns, self._size, jpeg))
 
 
-class PatternRobot:
+class PatternRobot(DriverRobot):
     """See Robot. Pictures and states come from the event loop's own timers."""
 
     def __init__(
@@ -106,51 +107,20 @@ class PatternRobot:
         clock: Clock,
         on_drive: Callable[[SentTwist], None],
     ) -> None:
-        self._description = description
+        super().__init__(description)
         self._clock = clock
-        self._base = PatternBase(clock, on_drive)
-        self._arm = PatternArm(description.arm.standard.pose())
-        self._camera = PatternCamera(description.camera.model().size, jpegs)
-        self._health = Health(LinkStatus.STARTING)
-        self._health_listeners = Listeners()
+        self.base = PatternBase(clock, on_drive)
+        self.arm = PatternArm(description.arm.standard.pose())
+        self.frames = PatternCamera(description.camera.model().size, jpegs)
         self._timers: list[asyncio.Task[None]] = []
-
-    @property
-    def description(self) -> RobotDescription:
-        """See Robot."""
-        return self._description
-
-    @property
-    def base(self) -> PatternBase:
-        """See Robot."""
-        return self._base
-
-    @property
-    def arm(self) -> PatternArm:
-        """See Robot."""
-        return self._arm
-
-    @property
-    def frames(self) -> PatternCamera:
-        """See Robot."""
-        return self._camera
-
-    @property
-    def health(self) -> Health:
-        """See Robot."""
-        return self._health
-
-    def subscribe_health(self, listener: Callable[[Health], None]) -> Unsubscribe:
-        """See Robot."""
-        return self._health_listeners.subscribe(listener)
 
     async def connect(self) -> None:
         """See Robot."""
         self._timers = [
-            asyncio.create_task(self._repeat(self._description.camera.rate_hz, self._camera.tell)),
+            asyncio.create_task(self._repeat(self.description.camera.rate_hz, self.frames.tell)),
             asyncio.create_task(self._repeat(STATE_RATE_HZ, self._tell_state)),
         ]
-        self._become(Health(LinkStatus.RUNNING))
+        self._set_health(Health(LinkStatus.RUNNING))
 
     async def close(self) -> None:
         """See Robot."""
@@ -158,13 +128,9 @@ class PatternRobot:
             timer.cancel()
         self._timers = []
 
-    def _become(self, health: Health) -> None:
-        self._health = health
-        self._health_listeners.tell(health)
-
     def _tell_state(self, now_ns: int) -> None:
-        self._base.tell(now_ns)
-        self._arm.tell(now_ns)
+        self.base.tell(now_ns)
+        self.arm.tell(now_ns)
 
     async def _repeat(self, rate_hz: float, tell: Callable[[int], None]) -> None:
         # Against a fixed schedule, so that lateness does not add up; what was missed is not caught up.

@@ -16,6 +16,7 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.arm_section import ArmSection
 from tapreach.robot.clock import MS, SECOND, Clock
 from tapreach.robot.config import RobotDescription
+from tapreach.robot.driver_robot import DriverRobot
 from tapreach.robot.interface import Listeners, Unsubscribe
 from tapreach.robot.messages import (
     STILL,
@@ -170,7 +171,7 @@ class FakeCamera:
         self._listeners.tell(Frame(self._frame_id, captured_ns, self._clock.now_ns(), size, jpeg))
 
 
-class FakeRobot:
+class FakeRobot(DriverRobot):
     """See Robot. Moves in steps of 10 ms of the given clock.
 
     `draws_in_thread` keeps drawing out of the event loop; with a clock turned by hand it must be False, so
@@ -178,44 +179,13 @@ class FakeRobot:
     """
 
     def __init__(self, description: RobotDescription, clock: Clock, draws_in_thread: bool = True) -> None:
+        super().__init__(description)
         self._draws_in_thread = draws_in_thread
-        self._description = description
         self._clock = clock
-        self._health = Health(LinkStatus.STARTING)
-        self._health_listeners = Listeners()
         self._running: asyncio.Task[None] | None = None
-        self._base = FakeBase(clock, description, self._require_link)
-        self._arm = FakeArm(clock, description.arm, self._require_link)
-        self._camera = FakeCamera(clock, description)
-
-    @property
-    def description(self) -> RobotDescription:
-        """See Robot."""
-        return self._description
-
-    @property
-    def base(self) -> FakeBase:
-        """See Robot."""
-        return self._base
-
-    @property
-    def arm(self) -> FakeArm:
-        """See Robot."""
-        return self._arm
-
-    @property
-    def frames(self) -> FakeCamera:
-        """See Robot."""
-        return self._camera
-
-    @property
-    def health(self) -> Health:
-        """See Robot."""
-        return self._health
-
-    def subscribe_health(self, listener: Callable[[Health], None]) -> Unsubscribe:
-        """See Robot."""
-        return self._health_listeners.subscribe(listener)
+        self.base = FakeBase(clock, description, self._require_link)
+        self.arm = FakeArm(clock, description.arm, self._require_link)
+        self.frames = FakeCamera(clock, description)
 
     async def connect(self) -> None:
         """See Robot."""
@@ -230,18 +200,14 @@ class FakeRobot:
             with suppress(asyncio.CancelledError):
                 await self._running
             self._running = None
-        await self._camera.finish()
+        await self.frames.finish()
 
     def lose(self, reason: str) -> None:
         """Lose the link, as when a cable is pulled: the wheels stop, commands raise LinkLost."""
         if self._health.status is not LinkStatus.LOST:
-            self._base.halt()
-            self._base.step()
+            self.base.halt()
+            self.base.step()
             self._set_health(Health(LinkStatus.LOST, reason))
-
-    def _set_health(self, health: Health) -> None:
-        self._health = health
-        self._health_listeners.tell(health)
 
     def _require_link(self) -> None:
         if not self._health.is_running:
@@ -251,13 +217,13 @@ class FakeRobot:
 
     async def _run(self) -> None:
         start_ns, steps, shots = self._clock.now_ns(), 0, 0
-        shot_ns = round(SECOND / self._description.camera.rate_hz)
+        shot_ns = round(SECOND / self.description.camera.rate_hz)
         while self._health.is_running:
-            self._base.step()
-            self._arm.step()
+            self.base.step()
+            self.arm.step()
             if self._clock.now_ns() >= start_ns + shots * shot_ns:
                 shots = (self._clock.now_ns() - start_ns) // shot_ns + 1
-                self._camera.shoot(self._base.odometry.world_from_base, self._draws_in_thread)
+                self.frames.shoot(self.base.odometry.world_from_base, self._draws_in_thread)
             steps = (self._clock.now_ns() - start_ns) // STEP_NS + 1
             await self._clock.sleep_until(start_ns + steps * STEP_NS)
 

@@ -1,6 +1,7 @@
 """A robot and its peer by a clock that is turned by hand: bytes go over without a line, in order, at once."""
 
 import asyncio
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
 
@@ -9,6 +10,7 @@ from tests.drivers.arduino.rig import DrawnCamera, description_for
 
 from tapreach.drivers.arduino.robot import ArduinoRobot
 from tapreach.robot.clock import MS, ManualClock
+from tapreach.robot.messages import ArmState, Health, Odometry, Twist
 
 STEP_NS = 5 * MS
 
@@ -37,6 +39,9 @@ class ClockedRobot(ArduinoRobot):
         self.port: MemoryPort | None = None
         self.is_plugged = True
         self._steps: asyncio.Task[None] | None = None
+        self.odometry: list[Odometry] = []
+        self.healths: list[Health] = []
+        self.arms: list[ArmState] = []
 
     def _open(self, section: Any, hear: Any, end: Any) -> MemoryPort:
         if not self.is_plugged:
@@ -86,6 +91,26 @@ class ClockedRobot(ArduinoRobot):
         while True:
             self.board.step()
             await self.clock.sleep_until(self.clock.now_ns() + STEP_NS)
+
+
+async def play_on(robot: ClockedRobot, scenario: Callable[[Any], Awaitable[None]]) -> None:
+    """Run a scenario on a connected robot that notes what it tells, and close it however that ends."""
+    robot.base.subscribe(robot.odometry.append)
+    robot.arm.subscribe(robot.arms.append)
+    robot.subscribe_health(robot.healths.append)
+    await robot.connect()
+    assert robot.health.is_running
+    try:
+        await scenario(robot)
+    finally:
+        await robot.close()
+
+
+async def drive(robot: ClockedRobot, twist: Twist, duration_ns: int) -> None:
+    """Ask for a twist every 20 ms."""
+    for _ in range(duration_ns // (20 * MS)):
+        robot.base.drive(twist)
+        await robot.pass_time(20 * MS)
 
 
 def clocked_robot(**board: Any) -> ClockedRobot:

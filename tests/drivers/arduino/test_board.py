@@ -4,7 +4,7 @@ import asyncio
 import math
 
 import pytest
-from tests.drivers.arduino.memory import clocked_robot
+from tests.drivers.arduino.memory import clocked_robot, drive, play_on
 
 from tapreach.drivers.arduino.frame_reader import encode
 from tapreach.drivers.arduino.wire import (
@@ -28,25 +28,9 @@ from tapreach.robot.own_moves import MovesByItself, MoveStatus
 
 def play(scenario, **board):
     async def run():
-        robot = clocked_robot(**board)
-        robot.odometry, robot.healths, robot.arms = [], [], []
-        robot.base.subscribe(robot.odometry.append)
-        robot.arm.subscribe(robot.arms.append)
-        robot.subscribe_health(robot.healths.append)
-        await robot.connect()
-        assert robot.health.is_running
-        try:
-            await scenario(robot)
-        finally:
-            await robot.close()
+        await play_on(clocked_robot(**board), scenario)
 
     asyncio.run(run())
-
-
-async def drive(robot, twist, duration_ns):
-    for _ in range(duration_ns // (20 * MS)):
-        robot.base.drive(twist)
-        await robot.pass_time(20 * MS)
 
 
 def test_odometry_goes_on_while_ticks_and_microseconds_wrap():

@@ -3,7 +3,7 @@
 import asyncio
 
 import pytest
-from tests.drivers.arduino.memory import ClockedRobot
+from tests.drivers.arduino.memory import ClockedRobot, drive, play_on
 
 from tapreach.drivers.arduino.ros_lines import counts_of
 from tapreach.robot.clock import MS, SECOND, ManualClock
@@ -52,24 +52,9 @@ class RosPeer:
 def play(scenario):
     async def run():
         clock = ManualClock()
-        robot = ClockedRobot(RosPeer(clock), clock, "ros-arduino")
-        robot.odometry, robot.arms = [], []
-        robot.base.subscribe(robot.odometry.append)
-        robot.arm.subscribe(robot.arms.append)
-        await robot.connect()
-        assert robot.health.is_running
-        try:
-            await scenario(robot)
-        finally:
-            await robot.close()
+        await play_on(ClockedRobot(RosPeer(clock), clock, "ros-arduino"), scenario)
 
     asyncio.run(run())
-
-
-async def drive(robot, twist, duration_ns):
-    for _ in range(duration_ns // (20 * MS)):
-        robot.base.drive(twist)
-        await robot.pass_time(20 * MS)
 
 
 def test_wheels_speed_up_by_ramps_and_odometry_counts():

@@ -1,7 +1,7 @@
 """The robot whose wheels and servos a microcontroller drives, with any camera."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 
 from tapreach.drivers.arduino.board import FramedBoard
@@ -13,7 +13,8 @@ from tapreach.drivers.arduino.ros_board import RosBoard
 from tapreach.errors import ConfigError, DriverError
 from tapreach.robot.clock import MS, SECOND, Clock
 from tapreach.robot.config import RobotDescription
-from tapreach.robot.interface import Arm, Base, FrameSource, Listeners, Unsubscribe
+from tapreach.robot.driver_robot import DriverRobot
+from tapreach.robot.interface import Arm, Base, FrameSource, Unsubscribe
 from tapreach.robot.messages import Health, LinkStatus
 from tapreach.robot.teachable import Bench, CarryOut
 
@@ -21,8 +22,8 @@ TICK_NS = 10 * MS
 CONNECT_NS = 5 * SECOND
 
 
-class ArduinoRobot:
-    """See Robot.
+class ArduinoRobot(DriverRobot):
+    """See Robot. With protocol 'tapreach' its base is also a MovesByItself.
 
     `connect` waits up to 5 s for board and camera and returns in any case: what is missing is told by
     `health` and looked for until `close`, so that a cable may be plugged in later.
@@ -37,47 +38,20 @@ class ArduinoRobot:
     ) -> None:
         if description.link is None:
             raise ConfigError("the robot file has no [link]: without it no board is known")
-        self._description, self._clock = description, clock
+        super().__init__(description, "the link has not been opened")
+        self._clock = clock
         framed = description.link.protocol == "tapreach"
         made = FramedBoard if framed else RosBoard
         self._board: Board = made(description, clock, self._write, self._take_board_health)
         hears = self._board.found, self._board.heard, self._lost
         self._link = Link(description.link, clock, *hears, open_port)
         self._camera = make_camera(description, clock)
-        self._board_health = Health(LinkStatus.STARTING, "the link has not been opened")
-        self._health = self._board_health
-        self._health_listeners = Listeners()
+        self.base: Base = self._board.base
+        self.arm: Arm = self._board.arm
+        self.frames: FrameSource = self._camera
+        self._board_health = self.health
         self._tasks: list[asyncio.Task[None]] = []
         self._unsubscribe: Unsubscribe | None = None
-
-    @property
-    def description(self) -> RobotDescription:
-        """See Robot."""
-        return self._description
-
-    @property
-    def base(self) -> Base:
-        """See Robot. With protocol 'tapreach' it is also a MovesByItself."""
-        return self._board.base
-
-    @property
-    def arm(self) -> Arm:
-        """See Robot."""
-        return self._board.arm
-
-    @property
-    def frames(self) -> FrameSource:
-        """See Robot."""
-        return self._camera
-
-    @property
-    def health(self) -> Health:
-        """See Robot."""
-        return self._health
-
-    def subscribe_health(self, listener: Callable[[Health], None]) -> Unsubscribe:
-        """See Robot."""
-        return self._health_listeners.subscribe(listener)
 
     @property
     def can_be_taught(self) -> bool:
@@ -143,9 +117,7 @@ class ArduinoRobot:
         health, camera = self._board_health, self._camera.status
         if health.is_running and not camera.is_running:
             health = Health(LinkStatus.LOST, camera.reason)
-        if health != self._health:
-            self._health = health
-            self._health_listeners.tell(health)
+        self._set_health(health)
 
     def _on_end(self, task: "asyncio.Task[None]") -> None:
         if task.cancelled() or task.exception() is None:

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections import deque
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +19,13 @@ from tapreach.errors import LinkLost
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.clock import SECOND, Clock
 from tapreach.robot.config import RobotDescription
-from tapreach.robot.interface import Listeners, Unsubscribe
+from tapreach.robot.driver_robot import DriverRobot
 from tapreach.robot.messages import ArmPose, Health, LinkStatus, Twist
 
 TELEMETRY_EVERY = 2
 
 
-class InlineSimRobot:
+class InlineSimRobot(DriverRobot):
     """A Robot whose world is stepped by a task of the event loop, one control period per 10 ms of `clock`."""
 
     def __init__(
@@ -40,14 +39,13 @@ class InlineSimRobot:
         opengl: str = "auto",
         shadows: bool = True,
     ) -> None:
-        self._description, self._scene, self._clock = description, scene, clock
+        super().__init__(description, "the simulated robot has not been started")
+        self._scene, self._clock = scene, clock
         self._faults = faults if faults is not None else scene.faults
         self._seed, self._has_pictures, self._opengl, self._shadows = seed, has_pictures, opengl, shadows
         self.base = HostBase(description.base, self._send)
         self.arm = HostArm(description.arm, self._send)
         self.frames = HostCamera(description.camera, clock)
-        self._health = Health(LinkStatus.STARTING, "the simulated robot has not been started")
-        self._health_listeners = Listeners()
         self._history: deque[Snapshot] = deque(maxlen=TRUTH_HISTORY)
         self._world: World | None = None
         self._renderer: Renderer | None = None
@@ -55,25 +53,11 @@ class InlineSimRobot:
         self._teller: TruthTeller | None = None
         self._task: asyncio.Task[None] | None = None
 
-    @property
-    def description(self) -> RobotDescription:
-        """See Robot."""
-        return self._description
-
-    @property
-    def health(self) -> Health:
-        """See Robot."""
-        return self._health
-
-    def subscribe_health(self, listener: Callable[[Health], None]) -> Unsubscribe:
-        """See Robot."""
-        return self._health_listeners.subscribe(listener)
-
     async def connect(self) -> None:
         """Build the world and begin to step it. Raises SetupError when nothing can draw."""
-        world = World(self._scene, self._description, self._faults, self._seed)
+        world = World(self._scene, self.description, self._faults, self._seed)
         if self._has_pictures:
-            picture = self._description.camera
+            picture = self.description.camera
             self._renderer = Renderer(world.model, picture.width, picture.height, self._opengl)
             self._renderer.shadows = self._shadows
             self._camera = SimCamera(self._renderer, self._faults, self._seed, picture.delay_ms)
@@ -132,7 +116,7 @@ class InlineSimRobot:
 
     async def _step_along(self, world: World) -> None:
         captured_ns = self._clock.now_ns()
-        picture_ns = round(SECOND / self._description.camera.rate_hz)
+        picture_ns = round(SECOND / self.description.camera.rate_hz)
         next_picture_ns = captured_ns + picture_ns
         for count in range(1, 1 << 62):
             captured_ns += round(world.period_s * SECOND)
@@ -155,8 +139,3 @@ class InlineSimRobot:
         if self._camera:
             for picture in self._camera.delivered(now_ns):
                 self.frames.take(picture.captured_ns + self._camera.unknown_delay_ns, picture.jpeg)
-
-    def _set_health(self, health: Health) -> None:
-        if health != self._health:
-            self._health = health
-            self._health_listeners.tell(health)

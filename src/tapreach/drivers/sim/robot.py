@@ -4,7 +4,6 @@ import asyncio
 import socket
 import subprocess
 import sys
-from collections.abc import Callable
 
 from tapreach import errors
 from tapreach.drivers.sim.faults import SimFaults
@@ -25,7 +24,7 @@ from tapreach.drivers.sim.protocol import (
 from tapreach.drivers.sim.scene import Scene
 from tapreach.robot.clock import Clock
 from tapreach.robot.config import RobotDescription
-from tapreach.robot.interface import Listeners, Unsubscribe
+from tapreach.robot.driver_robot import DriverRobot
 from tapreach.robot.messages import Health, LinkStatus
 
 START_TIMEOUT_S = 30.0
@@ -33,7 +32,7 @@ END_TIMEOUT_S = 2.0
 _LOST = "the connection to the simulated robot is lost"
 
 
-class SimRobot:
+class SimRobot(DriverRobot):
     """A Robot whose body is a process of its own; it stops its wheels when the host falls silent."""
 
     def __init__(
@@ -46,7 +45,7 @@ class SimRobot:
         opengl: str = "auto",
         tells_truth: bool = False,
     ) -> None:
-        self._description = description
+        super().__init__(description, "the simulated robot has not been started")
         chosen = faults if faults is not None else scene.faults
         self._setup = Setup(
             scene.model_dump_json(exclude_unset=True), description.model_dump_json(),
@@ -55,8 +54,6 @@ class SimRobot:
         self.base = HostBase(description.base, self._send)
         self.arm = HostArm(description.arm, self._send)
         self.frames = HostCamera(description.camera, clock)
-        self._health = Health(LinkStatus.STARTING, "the simulated robot has not been started")
-        self._health_listeners = Listeners()
         self._process: subprocess.Popen[bytes] | None = None
         self._control: socket.socket | None = None
         self._frames: socket.socket | None = None
@@ -65,23 +62,9 @@ class SimRobot:
         self._truths: list[asyncio.Future[str]] = []
 
     @property
-    def description(self) -> RobotDescription:
-        """See Robot."""
-        return self._description
-
-    @property
-    def health(self) -> Health:
-        """See Robot."""
-        return self._health
-
-    @property
     def process_id(self) -> int | None:
         """Id of the simulator's process; None before it started."""
         return self._process.pid if self._process else None
-
-    def subscribe_health(self, listener: Callable[[Health], None]) -> Unsubscribe:
-        """See Robot."""
-        return self._health_listeners.subscribe(listener)
 
     async def connect(self) -> None:
         """Start the process and return when it runs.
@@ -212,11 +195,6 @@ class SimRobot:
                 asyncio.get_running_loop().remove_reader(ours.fileno())
                 ours.close()
         self._control = self._frames = None
-
-    def _set_health(self, health: Health) -> None:
-        if health != self._health:
-            self._health = health
-            self._health_listeners.tell(health)
 
 
 def _spawn(control_fd: int, frames_fd: int) -> "subprocess.Popen[bytes]":
