@@ -42,4 +42,14 @@ WIRING = {
         battery_channel=0,
         battery_divider=1 / 3,
     ),
+    "yun": Wiring(  # its Linux side is on UART 1; that of a Leonardo is USB, which simavr does not have
+        chip=Chip("atmega32u4", "1"),
+        pwm=(("C", 6), ("D", 0)),
+        direction=((("F", 6), ("F", 5)), (("F", 4), ("F", 1))),
+        encoders=((("B", 4), ("B", 5)), (("B", 6), ("B", 7))),
+        servos=(("D", 1), ("D", 4), ("D", 7), ("D", 6)),
+        stop=("F", 0),
+        battery_channel=7,
+        battery_divider=1 / 3,
+    ),
 }
