@@ -189,7 +189,7 @@ def firmware(
     seed: FreshSeed = None,
     json: Json = None,
 ) -> None:
-    """The compiled firmware in a simulated microcontroller in a simulated robot. Takes about five hours."""
+    """The compiled firmware in a simulated microcontroller in a simulated robot. Takes about an hour and a half."""
     used = _told(seed)
     plan = firmware_bench.FirmwarePlan(used, board, 300, vanishings, moves, noise_bytes, hours, wraps)
     if smoke:
