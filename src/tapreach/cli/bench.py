@@ -189,7 +189,7 @@ def firmware(
     seed: FreshSeed = None,
     json: Json = None,
 ) -> None:
-    """The compiled firmware in a simulated microcontroller in a simulated robot. Takes about an hour and a half."""
+    """The compiled firmware in a simulated microcontroller in a simulated robot. Takes 1.5 hours."""
     used = _told(seed)
     plan = firmware_bench.FirmwarePlan(used, board, 300, vanishings, moves, noise_bytes, hours, wraps)
     if smoke:
