@@ -3,7 +3,7 @@ needs.
 """
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -90,6 +90,19 @@ class Frames:
                 raise LinkLost("no picture for 2 s")
             await self._clock.sleep_until(self._clock.now_ns() + 5 * MS)
         return newest
+
+
+class Doing:
+    """A task that does what it is given."""
+
+    kind = "doing"
+
+    def __init__(self, do: Callable[[TaskContext], Awaitable[object]]) -> None:
+        self._do = do
+
+    async def run(self, context: TaskContext) -> str:
+        await self._do(context)
+        return "done"
 
 
 @dataclass

@@ -22,20 +22,7 @@ from tapreach.tasks.delay_kept import DelayKept
 from tapreach.tasks.follower import Follower
 from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.task import Tap, TaskContext, TaskReport, TaskState
-from tasks.rig import OPERATOR, Rig, bare_context, running_rig, sim_description
-
-
-class Doing:
-    """A task that does what it is given."""
-
-    kind = "doing"
-
-    def __init__(self, do: Callable[[TaskContext], Awaitable[object]]) -> None:
-        self._do = do
-
-    async def run(self, context: TaskContext) -> str:
-        await self._do(context)
-        return "done"
+from tasks.rig import OPERATOR, Doing, Rig, bare_context, running_rig, sim_description
 
 
 def late_robot(delay_ms: float, rate_hz: float) -> Callable[[ManualClock], InlineSimRobot]:
