@@ -64,6 +64,7 @@ def test_held_is_lifted_and_between_the_fingers() -> None:
     standing = Standing("can", world(thing()))
     lifted = thing(centre=(0.3, 0.0, 0.16))
     assert standing.is_held(world(lifted, gripper=(0.3, 0.0, 0.15)))
+    assert standing.is_held(world(lifted, gripper=(0.24, 0.0, 0.15))), "pinched by the ends of the fingers"
     assert not standing.is_held(world(lifted, gripper=(0.2, 0.0, 0.15))), "it is not in the claw"
     assert not standing.is_held(world(thing(centre=(0.3, 0.0, 0.07)), gripper=(0.3, 0.0, 0.07))), "not lifted"
     assert not is_between_fingers(world(lifted, gripper=(0.3, 0.05, 0.15)), "can")

@@ -13,6 +13,7 @@ LIFTED = 0.02
 MOVED = 0.02
 """What is not meant and is so far from where it stood was moved [m]."""
 _FORGIVEN = 0.01
+_ALONG_FINGERS = np.linspace(-0.025, 0.025, 11)
 _ROUND = ("can", "bottle", "cup")
 
 
@@ -46,11 +47,15 @@ class Standing:
 
 
 def is_between_fingers(now: WorldTruth, thing: str) -> bool:
-    """Tell whether the claw's gripping point lies in the box that holds the thing; 1 cm is forgiven."""
+    """Tell whether some place between the fingers, which reach 25 mm before and behind the gripping point,
+    lies in the box that holds the thing; 1 cm is forgiven.
+    """
     there = now.object(thing)
-    grip = RigidTransform.from_matrix(np.array(now.world_from_gripper)).translation
-    in_thing = RigidTransform.from_matrix(np.array(there.world_from_object)).inv().apply(grip)
-    return bool(np.all(np.abs(in_thing) <= 0.5 * np.array(there.size) + _FORGIVEN))
+    along = np.column_stack([_ALONG_FINGERS, np.zeros((len(_ALONG_FINGERS), 2))])
+    between = RigidTransform.from_matrix(np.array(now.world_from_gripper)).apply(along)
+    in_thing = RigidTransform.from_matrix(np.array(there.world_from_object)).inv().apply(between)
+    is_inside = np.all(np.abs(in_thing) <= 0.5 * np.array(there.size) + _FORGIVEN, axis=1)
+    return bool(is_inside.any())
 
 
 def foot_height(thing: ObjectTruth) -> float:
