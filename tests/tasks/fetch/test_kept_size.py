@@ -93,3 +93,13 @@ def test_size_is_told_once_more_by_each_measurement_from_elsewhere_that_agrees()
         assert current is not None
         told.append(current.told)
     assert told == [1, 1, 2, 2, 3]
+
+
+def test_outline_with_an_end_in_doubt_does_not_replace_a_width_that_is_known() -> None:
+    """It agrees only because it says so little."""
+    cup = replace(size_at(0.5, 0.0, 0.059, 0.11, width_sd=0.005), seen_along=0.0, told=3)
+    blurred = size_at(0.5, 0.0, 0.264, 0.12, width_sd=0.09)
+    assert not contradicts(blurred, cup, 0.0)
+    assert SizeDoubt().believed(blurred, cup, PlanarPose(), 0.0) is None
+    from_aside = SizeDoubt().believed(blurred, cup, PlanarPose(), math.radians(40.0))
+    assert from_aside is not None and from_aside.width == blurred.width

@@ -8,6 +8,8 @@ from tapreach.tasks.fetch.thing import SAME_SIDE, NoSize, ThingSize
 from tapreach.tasks.sighting import is_apart
 
 _SAME_SIGMAS = 3.0
+_SAYS_LESS = 2.0
+"""A width known so many times worse than the one before, one sigma, changes nothing."""
 _ELSEWHERE = 0.05, math.radians(5.0)
 """A size measured again after so much of a way [m], [rad] rests on other pictures."""
 
@@ -34,7 +36,8 @@ class SizeDoubt:
             believed = self._told_twice(new.by_one_view, here)
         elif isinstance(current, NoSize) or not contradicts(new, current, seen_along):
             self.against = None
-            believed = replace(new, told=self._times_told(new, current, here))
+            is_known_better = isinstance(current, ThingSize) and _says_less(new, current, seen_along)
+            believed = None if is_known_better else replace(new, told=self._times_told(new, current, here))
         else:
             before, self.against = _newest(self.against, new, here)
             is_told = before is not None and not contradicts(new, before, seen_along)
@@ -54,6 +57,11 @@ class SizeDoubt:
             return 1
         is_elsewhere = self.taken_from is not None and is_apart(self.taken_from, here, *_ELSEWHERE)
         return current.told + int(is_elsewhere)
+
+
+def _says_less(new: ThingSize, current: ThingSize, seen_along: float) -> bool:
+    """Tell whether a new width of the same side agrees only because it says so little itself."""
+    return _is_same_side(current, seen_along) and new.width_sd > _SAYS_LESS * current.width_sd
 
 
 def _newest(
@@ -85,8 +93,11 @@ def contradicts(new: ThingSize, current: ThingSize, seen_along: float) -> bool:
 
     seen_along: as above. What stands close behind or beside the thing now and then passes for part of it.
     """
-    is_same_side = current.seen_along is None or abs(wrapped(seen_along - current.seen_along)) <= SAME_SIDE
-    return is_same_side and not agree(new, current)
+    return _is_same_side(current, seen_along) and not agree(new, current)
+
+
+def _is_same_side(current: ThingSize, seen_along: float) -> bool:
+    return current.seen_along is None or abs(wrapped(seen_along - current.seen_along)) <= SAME_SIDE
 
 
 def agree(new: ThingSize, earlier: ThingSize) -> bool:
