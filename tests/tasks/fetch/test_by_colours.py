@@ -59,6 +59,14 @@ def test_thing_farther_off_than_it_should_be_is_found_only_by_most_of_its_colour
     assert tap is not None and abs(tap.u - pixel_of(bumped)[0]) < 15.0
 
 
+def test_thing_of_which_hardly_the_place_is_known_is_not_sought_farther_off_still() -> None:
+    run = run_after_look((RED, RED, RED))
+    assert run.memory.known is not None
+    unsure = replace(run.memory.known.place, cov_in_world=np.diag([0.1, 0.004, 0.004]) ** 2)
+    run.remember(known=replace(run.memory.known, place=unsure))
+    assert tapped(run, frame(MIDDLE + np.array([0.0, 0.05, 0.0]), RED)) is None
+
+
 @pytest.mark.parametrize("seen", [frame(MIDDLE, GREEN), Frame(0, 0, 0, ROBOT.camera.model().size, b"")])
 def test_thing_of_another_colour_or_in_a_broken_picture_is_not_tapped(seen: Frame) -> None:
     run = run_after_look((RED, RED, RED))

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from tapreach.errors import FrameError
 from tapreach.geometry.pixel import ImageSize, Pixel
 from tapreach.geometry.pixel_box import PixelBox
@@ -23,6 +25,8 @@ _AS_KNOWN, _FARTHER_OFF = (1.0, LEAST_COMMON), (2.5, 0.6)
 """How many times worse its place may be known, and how much of its colours it must have there: what is not
 where it should be is met farther off only with most of them, as a robot that bumped into something finds it.
 """
+_WELL_KNOWN_SD = 0.06
+"""Of a place known worse than this [m] nothing is farther off: others alike would be met first."""
 _SURELY_COMMON = 0.5
 """What has so much in common with the colours known shows the thing: Bhattacharyya's coefficient."""
 
@@ -75,8 +79,7 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
     known, description = run.memory.known, run.context.description
     if known is None or known.colours is None:
         return None
-    as_usual = [] if known.size is None else [(replace(known, size=None, axis_offset=None), *_AS_KNOWN)]
-    for supposed, times, least in ((known, *_AS_KNOWN), *as_usual, (known, *_FARTHER_OFF)):
+    for supposed, times, least in _suppositions(known):
         there = expected_box(supposed, here, description)
         if there is None:
             continue
@@ -91,6 +94,15 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
         run.remember(known=known_at_spot(supposed, spot, box, here, description))
         return Tap(frame.frame_id, spot.u, spot.v)
     return None
+
+
+def _suppositions(known: KnownThing) -> list[tuple[KnownThing, float, float]]:
+    """Return what is sought one after the other: as which thing, how many times less sure of its place, and
+    with how much of its colours.
+    """
+    as_usual = [] if known.size is None else [(replace(known, size=None, axis_offset=None), *_AS_KNOWN)]
+    is_well_known = float(np.linalg.eigvalsh(known.place.cov_in_world)[-1]) < _WELL_KNOWN_SD**2
+    return [(known, *_AS_KNOWN), *as_usual, *([(known, *_FARTHER_OFF)] if is_well_known else [])]
 
 
 def _found(
