@@ -10,18 +10,23 @@ from pathlib import Path
 
 from tests.firmware.sim.live_robot import live_robot
 
+from tapreach.drivers.sim.scene import load_scene
+
 ROOT = Path(__file__).resolve().parents[3]
 
 
 @dataclass(frozen=True)
 class Look:
-    """What is so at one moment: simulated times [µs], duties of the motors, how far behind it was at most."""
+    """What is so at one moment: simulated times [µs], duties of the motors, how far behind it was at most,
+    and the heights of the middles of all things above the floor [m].
+    """
 
     now_us: float
     off_since_us: float
     powered_us: float
     duties: tuple[float, float]
     worst_lag_s: float
+    heights: dict[str, float]
 
 
 class LiveProcess:
@@ -60,13 +65,15 @@ def live_process(scene: str, folder: Path) -> Iterator[LiveProcess]:
 
 def main(scene: str, folder: str) -> None:
     """Serve looks until the input ends."""
-    with live_robot(scene, Path(folder)) as (file, bridge):
+    names = load_scene(scene).object_names()
+    with live_robot(scene, Path(folder)) as (file, bridge, world):
         _say(str(file))
         for _ in sys.stdin:
             with bridge.lock:
                 rover = bridge.rover
                 powered_us, off_us = rover.powered_us(), rover.off_since_us()
-                told = Look(rover.now_us, off_us, powered_us, rover.duties, bridge.worst_lag_s)
+                heights = {name: float(world.data.body(name).xpos[2]) for name in names}
+                told = Look(rover.now_us, off_us, powered_us, rover.duties, bridge.worst_lag_s, heights)
                 bridge.worst_lag_s = 0.0
             _say(json.dumps(asdict(told)))
 

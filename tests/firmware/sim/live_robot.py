@@ -16,12 +16,14 @@ from tests.firmware.sim.whole_robot import described
 from tapreach.drivers.sim.camera import encode_jpeg
 from tapreach.drivers.sim.renderer import Renderer
 from tapreach.drivers.sim.scene import load_scene
+from tapreach.drivers.sim.world import World
 from tapreach.resources import resource_path
 
 RATE_HZ = 10.0
 BOUNDARY = b"\r\n--picture\r\nContent-Type: image/jpeg\r\nContent-Length: %d\r\n\r\n"
 LINK = 'driver = "arduino"\n\n[link]\naddress = "{device}"\n'
-CAMERA = '[camera]\nsource = "{pictures}"\ndelay_ms = 15.0\n'
+DELAY_MS = 15.0
+CAMERA = f'[camera]\nsource = "{{pictures}}"\ndelay_ms = {DELAY_MS}\n'
 SERVO = "\n[arm.servos.{name}]\n{keys}\n"
 
 
@@ -51,13 +53,20 @@ class Camera(threading.Thread):
             with self._bridge.lock:
                 self._horns.follow()
                 seen = self._plant.world.snapshot()
+            began_s = time.monotonic()
             jpeg = encode_jpeg(renderer.render(seen), 85)
+            self._was_late(time.monotonic() - began_s - DELAY_MS / 1000.0)
             with self._has_new:
                 self._newest = jpeg
                 self._has_new.notify_all()
             due = max(due + 1 / RATE_HZ, time.monotonic())
             self._ending.wait(due - time.monotonic())
         renderer.close()
+
+    def _was_late(self, lag_s: float) -> None:
+        """A picture that the machine draws much later than it says is as bad as a board that falls behind."""
+        with self._bridge.lock:
+            self._bridge.worst_lag_s = max(self._bridge.worst_lag_s, lag_s)
 
     def end(self) -> None:
         self._ending.set()
@@ -105,8 +114,8 @@ def robot_file(folder: Path, device: str, pictures: str) -> Path:
 
 
 @contextmanager
-def live_robot(scene: str, folder: Path, board: str = "uno") -> Iterator[tuple[Path, Bridge]]:
-    """Run it; yield its robot file and the bridge, whose lock must be held to look at the rover."""
+def live_robot(scene: str, folder: Path, board: str = "uno") -> Iterator[tuple[Path, Bridge, World]]:
+    """Run it; yield its robot file, the bridge, whose lock must be held to look at it, and the world."""
     description = described()
     plant = MujocoPlant(load_scene(scene), description)
     rover = started_rover(board, plant)
@@ -116,7 +125,7 @@ def live_robot(scene: str, folder: Path, board: str = "uno") -> Iterator[tuple[P
     with bridge:
         camera.start()
         try:
-            yield robot_file(folder, bridge.url, camera.url), bridge
+            yield robot_file(folder, bridge.url, camera.url), bridge, plant.world
         finally:
             camera.end()
     rover.close()
