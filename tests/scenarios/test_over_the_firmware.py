@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 from playwright.sync_api import Browser
+from playwright.sync_api import Error as PlaywrightError
 from tests.firmware.sim.live_process import LiveProcess, Look, live_process
 from tests.firmware.sim.needs import needs_bed
 from tests.scenarios.conftest import Operator, operating
@@ -34,7 +35,7 @@ def in_real_time(robot: LiveProcess) -> Iterator[None]:
     robot.worst_lag_s = 0.0
     try:
         yield
-    except AssertionError:
+    except (AssertionError, PlaywrightError):
         robot.look()
         if robot.worst_lag_s > MOST_LAG_S:
             pytest.skip(f"the simulated board fell {robot.worst_lag_s:.2f} s behind: no real time here")
