@@ -23,8 +23,8 @@ pytestmark = needs_bed
 PERIOD_MS = 1000 / wire.CONTROL_HZ
 ON_THE_WAY_MS = 10.0
 """What a command may still be under way, in the line and between two steps of the bridge."""
-MOST_LAG_S = 0.05
-"""A board whose time falls behind ours by more is none: its clock cannot be aligned with."""
+MOST_LAG_S = 0.02
+"""A board or a picture that falls behind by more is none: the robot file says that times are as sure as that."""
 Live = tuple[Operator, Running, LiveProcess]
 
 
