@@ -24,7 +24,7 @@ PERIOD_MS = 1000 / wire.CONTROL_HZ
 ON_THE_WAY_MS = 10.0
 """What a command may still be under way, in the line and between two steps of the bridge."""
 MOST_LAG_S = 0.02
-"""A board or a picture that falls behind by more is none: the robot file says that times are as sure as that."""
+"""A board or a picture that falls behind by more is none: so sure are times by the robot file."""
 Live = tuple[Operator, Running, LiveProcess]
 
 
