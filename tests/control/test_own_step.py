@@ -6,6 +6,7 @@ import math
 import pytest
 from tests.drivers.arduino.memory import clocked_robot
 
+from control.played import play as play_with
 from tapreach.control.authority import Authority
 from tapreach.control.deadman import Deadman
 from tapreach.control.emergency_stop import EmergencyStop
@@ -56,20 +57,11 @@ class Rig:
 
 
 def play(scenario):
-    async def run():
-        rig = Rig()
-        await rig.robot.connect()
-        running = asyncio.create_task(rig.loop.run())
-        try:
-            await rig.pass_time(200 * MS)
-            rig.robot.board.asked.clear()
-            await scenario(rig)
-        finally:
-            running.cancel()
-            await asyncio.gather(running, return_exceptions=True)
-            await rig.robot.close()
+    async def begun(rig):
+        rig.robot.board.asked.clear()
+        await scenario(rig)
 
-    asyncio.run(run())
+    play_with(Rig, begun)
 
 
 def test_turn_and_advance_are_one_command_each_and_no_drive_comes_between():

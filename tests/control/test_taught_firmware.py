@@ -7,6 +7,7 @@ from tests.cli.test_teach import SHIPPED, Scripted, motor_answers
 from tests.cli.test_teach_firmware import FirmwareBoard, needs_compiler
 from tests.drivers.arduino.memory import ClockedRobot
 
+from control.played import play as play_with
 from tapreach.control.authority import Authority
 from tapreach.control.deadman import Deadman
 from tapreach.control.emergency_stop import EmergencyStop
@@ -62,19 +63,7 @@ class Rig:
 
 
 def play(scenario):
-    async def run():
-        rig = Rig()
-        await rig.robot.connect()
-        running = asyncio.create_task(rig.loop.run())
-        try:
-            await rig.pass_time(200 * MS)
-            await scenario(rig)
-        finally:
-            running.cancel()
-            await asyncio.gather(running, return_exceptions=True)
-            await rig.robot.close()
-
-    asyncio.run(run())
+    play_with(Rig, scenario)
 
 
 def test_motors_turn_gently_and_driving_goes_on_with_feedback_afterwards():

@@ -50,6 +50,14 @@ class CorrectedDrive:
     base_from_camera: RigidTransform
     errors: PoseErrors
 
+    def step(self, first: int, second: int) -> tuple[PlanarPose, FloatArray]:
+        """Return the step from pose number `first` to `second`, and the error (3, k) of its end, in the base
+        there, per unit normal.
+        """
+        by_base = self.errors.by_base[:, _PLANAR_ROWS]
+        before = _carried(self.poses[first], self.poses[second]) @ by_base[first]
+        return self.poses[first].between(self.poses[second]), np.asarray(by_base[second] - before)
+
 
 def corrected_drive(
     poses: Sequence[PlanarPose],

@@ -2,20 +2,16 @@
 
 from tapreach.errors import InputError
 from tapreach.geometry.pixel_box import PixelBox
-from tapreach.server.message_base import Request
 from tapreach.server.messages import Ack
 from tapreach.server.messages_fetch import Fetch, FetchConfirm, FetchResume, FetchVerb
-from tapreach.server.station import Station
+from tapreach.server.requests_of_driver import DriverRequests, done
 from tapreach.server.visitor import Visitor
 from tapreach.tasks.fetch.fetch_state import Mode, Verb
 from tapreach.tasks.task import Tap
 
 
-class FetchRequests:
-    """Each method answers one kind of request; what it raises is answered by the session."""
-
-    def __init__(self, station: Station) -> None:
-        self._station = station
+class FetchRequests(DriverRequests):
+    """Of fetching; see DriverRequests."""
 
     def fetch(self, visitor: Visitor, request: Fetch) -> Ack:
         """Begin to fetch a tapped thing, or a known target."""
@@ -25,30 +21,25 @@ class FetchRequests:
             self._station.tasks.fetch_target(request.target_id, mode, visitor.session_id)
         else:
             self._station.tasks.fetch(_tap(request), mode, visitor.session_id)
-        return _done(request)
+        return done(request)
 
     def confirm(self, visitor: Visitor, request: FetchConfirm) -> Ack:
         """Pass on the operator's word."""
         self._require_lease(visitor)
         self._station.tasks.confirm_fetch()
-        return _done(request)
+        return done(request)
 
     def resume(self, visitor: Visitor, request: FetchResume) -> Ack:
         """Go on with what was stopped."""
         self._require_lease(visitor)
         self._station.tasks.resume_fetch(visitor.session_id)
-        return _done(request)
+        return done(request)
 
     def verb(self, visitor: Visitor, request: FetchVerb) -> Ack:
         """Do something with what is held."""
         self._require_lease(visitor)
         self._station.tasks.follow_up(Verb(request.verb), visitor.session_id)
-        return _done(request)
-
-    def _require_lease(self, visitor: Visitor) -> None:
-        if not self._station.lease.is_held_by(visitor.session_id):
-            raise InputError("you do not have the lease: ask to drive first")
-        self._station.lease.command_given(visitor.session_id)
+        return done(request)
 
 
 def _tap(request: Fetch) -> Tap:
@@ -56,7 +47,3 @@ def _tap(request: Fetch) -> Tap:
         raise InputError("give the tap (frame_id, u, v) or the target_id of what to fetch")
     box = PixelBox(*request.box) if request.box is not None else None
     return Tap(request.frame_id, request.u, request.v, box)
-
-
-def _done(request: Request) -> Ack:
-    return Ack(seq=request.seq, ok=True)

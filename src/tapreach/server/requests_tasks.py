@@ -2,7 +2,6 @@
 
 from tapreach.errors import InputError
 from tapreach.geometry.pixel_box import PixelBox
-from tapreach.server.message_base import Request
 from tapreach.server.messages import (
     Ack,
     GuideAct,
@@ -14,17 +13,14 @@ from tapreach.server.messages import (
     TargetClear,
     TaskCancel,
 )
-from tapreach.server.station import Station
+from tapreach.server.requests_of_driver import DriverRequests, done
 from tapreach.server.visitor import Visitor
 from tapreach.tasks.locate import ACCURACY
 from tapreach.tasks.task import Tap
 
 
-class TaskRequests:
-    """Each method answers one kind of request; what it raises is answered by the session."""
-
-    def __init__(self, station: Station) -> None:
-        self._station = station
+class TaskRequests(DriverRequests):
+    """Of targets, tasks and guides; see DriverRequests."""
 
     async def tap(self, visitor: Visitor, request: TapTarget) -> Ack:
         """Locate what was tapped, or guess where it stands on the floor."""
@@ -36,7 +32,7 @@ class TaskRequests:
         else:
             accuracy = ACCURACY if request.accuracy is None else request.accuracy
             self._station.tasks.locate(tap, visitor.session_id, accuracy)
-        return _done(request)
+        return done(request)
 
     def target_clear(self, visitor: Visitor, request: TargetClear) -> Ack:
         """Forget a target."""
@@ -44,50 +40,41 @@ class TaskRequests:
         self._station.tasks.target_cleared(request.target_id)
         if not self._station.targets.clear(request.target_id):
             raise InputError(f"there is no target {request.target_id}")
-        return _done(request)
+        return done(request)
 
     def task_cancel(self, visitor: Visitor, request: TaskCancel) -> Ack:
         """Stop the running task; anyone may, as with the emergency stop."""
         if not self._station.tasks.cancel(f"stopped by {visitor.name}"):
             raise InputError("no task is running")
-        return _done(request)
+        return done(request)
 
     async def guide_start(self, visitor: Visitor, request: GuideStart) -> Ack:
         """Begin a guide."""
         self._require_lease(visitor)
         await self._station.tasks.open_guide(request.kind, visitor.session_id)
-        return _done(request)
+        return done(request)
 
     async def guide_tap(self, visitor: Visitor, request: GuideTap) -> Ack:
         """Take a tap for the guide's step."""
         self._require_lease(visitor)
         guide = self._station.tasks.guide_of(visitor.session_id)
         await guide.tap(Tap(request.frame_id, request.u, request.v))
-        return _done(request)
+        return done(request)
 
     async def guide_value(self, visitor: Visitor, request: GuideValue) -> Ack:
         """Take a typed value."""
         self._require_lease(visitor)
         await self._station.tasks.guide_of(visitor.session_id).value(request.name, request.value)
-        return _done(request)
+        return done(request)
 
     async def guide_act(self, visitor: Visitor, request: GuideAct) -> Ack:
         """Do, or confirm, the guide's step."""
         self._require_lease(visitor)
         await self._station.tasks.guide_of(visitor.session_id).act(request.act)
-        return _done(request)
+        return done(request)
 
     async def guide_end(self, visitor: Visitor, request: GuideEnd) -> Ack:
         """Leave the guide."""
         self._station.tasks.guide_of(visitor.session_id)
         await self._station.tasks.end_guide()
-        return _done(request)
-
-    def _require_lease(self, visitor: Visitor) -> None:
-        if not self._station.lease.is_held_by(visitor.session_id):
-            raise InputError("you do not have the lease: ask to drive first")
-        self._station.lease.command_given(visitor.session_id)
-
-
-def _done(request: Request) -> Ack:
-    return Ack(seq=request.seq, ok=True)
+        return done(request)

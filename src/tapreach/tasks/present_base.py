@@ -10,7 +10,6 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.estimation.corrected_drive import corrected_drive
-from tapreach.estimation.odometry_noise import carried
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
@@ -19,8 +18,6 @@ from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Passed, Sighting
 from tapreach.tasks.straightening import seen_steps
 from tapreach.tasks.way_error import by_way, moved_by_base
-
-_PLANAR_ROWS = [0, 1, 5]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +80,4 @@ def _bridged(
     drive = corrected_drive(
         poses, odometry_noise(description), mount, mount_noise(description), seen_steps(way)
     )
-    step = drive.poses[first].between(drive.poses[-1])
-    by_base = drive.errors.by_base[:, _PLANAR_ROWS]
-    onward = carried(np.array([[step.x, step.y, step.heading]]))[0]
-    return step, np.asarray(by_base[-1] - onward @ by_base[first])
+    return drive.step(first, len(way))

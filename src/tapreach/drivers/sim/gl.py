@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 from tapreach.errors import SetupError
 
-# Before OpenGL is loaded: one drawing thread takes a fifth less of two cores, at the same picture rate.
+# Before OpenGL is loaded: one drawing thread leaves a core to physics and server, at the same picture rate.
 os.environ.setdefault("LP_NUM_THREADS", "1")
 
 INSTALL_HINT = (
