@@ -8,7 +8,7 @@ from tapreach.drivers.sim.faults import SimFaults
 from tapreach.drivers.sim.scene import load_scene
 from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.follower import Follower
-from tapreach.tasks.locate import Locating
+from tapreach.tasks.locating import Locating
 from tapreach.tasks.present_base import PresentPoint, at_present
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport

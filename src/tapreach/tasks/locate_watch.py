@@ -16,8 +16,11 @@ EDGE = 0.035
 """A target that moves outwards this near to the picture's edge is about to be lost; share of the picture."""
 BLOCKED = "the wheels turn but the picture stands still: something blocks the robot"
 SLIPPING = "the wheels slip, by what the picture shows: something may be in the way"
+HIDDEN = "the target is out of sight"
 _RECENT, _SLIPS = 8, 2
 """Of so many sightings, so many ways in a row that show a slip are no chance."""
+HARDLY_KNOWN = 0.1
+"""A relative error of the range, one sigma, beyond which it is not driven up to what is not seen."""
 LOST_NS = 600 * MS
 """So long it may be out of sight, as a passing shadow or arm makes it, before driving on has no purpose."""
 
@@ -25,6 +28,11 @@ LOST_NS = 600 * MS
 def is_accurate(estimate: PointEstimate | None, accuracy: float) -> bool:
     """Tell whether the range is known with a relative error (one sigma) no larger than wanted."""
     return estimate is not None and estimate.status is Status.DETERMINED and estimate.relative_sd <= accuracy
+
+
+def is_hardly_known(estimate: PointEstimate | None) -> bool:
+    """Tell whether too little is known of its place to drive up to it where it is not seen."""
+    return not is_accurate(estimate, HARDLY_KNOWN)
 
 
 @dataclass(frozen=True)
@@ -48,7 +56,7 @@ class MoveWatch:
         if obstruction := _obstruction(sightings):
             return obstruction
         if unseen_ns >= LOST_NS:
-            return "the target is out of sight"
+            return HIDDEN
         if self.is_forward and self._is_too_near(sightings[-1], estimate):
             return "the target may be right ahead"
         if len(sightings) > 1 and self._leaves_the_picture(sightings[-2], sightings[-1]):

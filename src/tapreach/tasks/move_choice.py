@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from tapreach.estimation.next_view import relative_sds_after
 from tapreach.geometry.finite import FloatArray
@@ -17,6 +18,8 @@ from tapreach.robot.config import RobotDescription
 from tapreach.tasks.candidate_moves import SIGMAS, Grid, coarse_grids, finer_grid, is_seen_and_clear
 from tapreach.tasks.clear_moves import ClearMoves
 from tapreach.tasks.fetch.obstacle import Obstacle
+from tapreach.tasks.going_back import LostSide
+from tapreach.tasks.optics import optics_of
 from tapreach.tasks.robot_noise import mount_noise, odometry_noise
 from tapreach.tasks.sighting import Sighting, observation_of
 
@@ -83,6 +86,7 @@ def choose_move(
     costs: MoveCosts | None = None,
     score: Score | None = None,
     keep_clear: Sequence[Obstacle] = (),
+    lost_sides: Sequence[LostSide] = (),
 ) -> Choice | None:
     """Return the best turn and advance from `world_from_base`; None when none keeps the target in view.
 
@@ -90,7 +94,7 @@ def choose_move(
     middle one in the picture and at a distance, or a farther one when that cannot be; for each of the others
     it counts as far as it can be made. most_advance, most_back [m]: what may be driven. costs: MoveCosts()
     when left out. score: the bound under the robot file's errors when left out. keep_clear: what else stands
-    there, in the world; the base turns and drives into none of it.
+    there, in the world; the base turns and drives into none of it. lost_sides: no move ends there.
     """
     search = _Search(
         world_from_base,
@@ -99,6 +103,7 @@ def choose_move(
         costs or MoveCosts(),
         score or bound_score(sightings, description),
         ClearMoves(keep_clear, points_in_world, world_from_base, description),
+        lost_sides,
     )
     for kept in range(len(points_in_world) // 2, len(points_in_world)):
         grids = coarse_grids(world_from_base, points_in_world[kept], most_advance, most_back, description)
@@ -117,6 +122,7 @@ def planned_move(
     turns_are_seen: bool,
     description: RobotDescription,
     keep_clear: Sequence[Obstacle] = (),
+    lost_sides: Sequence[LostSide] = (),
 ) -> Choice | None:
     """Return `choose_move` as a task wants it: everything that goes in can travel to another process."""
     return choose_move(
@@ -129,6 +135,7 @@ def planned_move(
         costs=MoveCosts(good_enough=accuracy),
         score=bound_score(sightings, description, turns_are_seen),
         keep_clear=keep_clear,
+        lost_sides=lost_sides,
     )
 
 
@@ -154,6 +161,7 @@ class _Search:
     costs: MoveCosts
     score: Score
     clear: ClearMoves
+    lost_sides: Sequence[LostSide]
 
     def best(self, coarse: Grid, kept: int) -> Choice | None:
         """Return the best candidate of a grid, refined; None when the point `kept` forbids them all.
@@ -179,7 +187,7 @@ class _Search:
             + self.costs.per_radian * np.abs(grid.turns)[:, None]
             + self.costs.per_metre * np.abs(grid.advances)[None, :]
         )
-        costs[~(np.isfinite(relative_sds[kept]) & self.clear.of(grid))] = np.inf
+        costs[~(np.isfinite(relative_sds[kept]) & self.clear.of(grid) & self._in_sight_from(grid))] = np.inf
         distance = self._distance(self.points_in_world[kept])
         return [
             Choice(
@@ -200,6 +208,12 @@ class _Search:
         if can_be_made.any():
             found[can_be_made] = self.score(point_in_world, stages[can_be_made])
         return found
+
+    def _in_sight_from(self, grid: Grid) -> npt.NDArray[np.bool_]:
+        """Tell (t, a) which moves do not end on a side from which the target is hidden."""
+        ends = grid.stages_in_world(self.world_from_base)[:, :, -1] @ optics_of(self.description.camera)[2]
+        hidden = [side.hides_from(ends[..., :3, 3]) for side in self.lost_sides]
+        return ~np.any(hidden, axis=0) if hidden else np.ones(ends.shape[:2], dtype=bool)
 
     def _distance(self, point_in_world: FloatArray) -> float:
         mount = self.description.camera.mount.base_from_camera()

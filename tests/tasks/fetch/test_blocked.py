@@ -15,8 +15,8 @@ from tapreach.tasks.fetch.memory import FetchMemory
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.follower import Follower
-from tapreach.tasks.locate import Locating
 from tapreach.tasks.locate_watch import BLOCKED
+from tapreach.tasks.locating import Locating
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap, TaskContext

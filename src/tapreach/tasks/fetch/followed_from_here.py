@@ -9,7 +9,7 @@ seen tell its distance as well as the old ones did.
 from tapreach.tasks.fetch.looking_again import keep_what_is_known, still_followed
 from tapreach.tasks.fetch.run import FetchRun
 from tapreach.tasks.follower import Follower
-from tapreach.tasks.locate import Locating
+from tapreach.tasks.locating import Locating
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap

@@ -39,8 +39,8 @@ from tapreach.tasks.fetch.too_high import (
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
-from tapreach.tasks.locate import Locating
-from tapreach.tasks.locate_watch import is_blocked
+from tapreach.tasks.locate_watch import HARDLY_KNOWN, is_blocked
+from tapreach.tasks.locating import Locating
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
 from tapreach.tasks.task import Tap
@@ -48,8 +48,6 @@ from tapreach.tasks.task import Tap
 ACCURACY = 0.02
 """Relative error of the range, one sigma, at which driving up begins: it is estimated on on the way."""
 MOST_LOOKS = 5
-_HARDLY_KNOWN = 0.1
-"""A relative error of the range, one sigma, beyond which it is not driven up to what is not seen."""
 GRASPING_SECONDS = 20.0
 """What looking at the claw, reaching, gripping and lifting take."""
 
@@ -77,7 +75,7 @@ async def _was_lost_early(run: FetchRun) -> bool:
     locating = run.locating
     if locating is None or locating.estimate is None or not locating.follower.loss or _is_too_high(run):
         return False
-    return locating.estimate.relative_sd > _HARDLY_KNOWN and await tap_again(run) is not None
+    return locating.estimate.relative_sd > HARDLY_KNOWN and await tap_again(run) is not None
 
 
 def _is_too_high(run: FetchRun) -> bool:

@@ -27,7 +27,7 @@ from tapreach.tasks.fetch.thing import ThingSize
 from tapreach.tasks.follower import LATEST_NS
 from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.known_place import KnownPlace
-from tapreach.tasks.locate import Locating
+from tapreach.tasks.locating import Locating
 from tapreach.tasks.optics import optics_of
 from tapreach.tasks.task import Tap, TaskContext
 from tapreach.vision.image_io import BrokenPicture, decode_gray

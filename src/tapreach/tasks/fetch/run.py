@@ -21,7 +21,7 @@ from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.surroundings import SeenAround
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tapreach.tasks.fetch.ways import Ways
-from tapreach.tasks.locate import Locating
+from tapreach.tasks.locating import Locating
 from tapreach.tasks.present_base import PresentPoint, at_present
 from tapreach.tasks.task import TaskContext
 
