@@ -22,6 +22,10 @@ _EDGE = 100.0
 _ON_THING = 0.3
 _AROUND = 0.05
 """The thing's surroundings, whose colours are not its own, reach so far [m]."""
+_REACH = 0.02
+"""Farther than this from what the parallax shows [m] colours make nothing part of the thing: a plain wall may
+have the same colour, and shows no parallax.
+"""
 BOUND = 0.6
 """Share of the rows that something else must bound on each side."""
 _BESIDE = 0.006
@@ -56,7 +60,7 @@ def cut_out(
     for half_width in HALF_WIDTHS:
         most = min(int(half_width / cell), picture.shape[1] // 2)
         first = best_outline(evidence, edges * (evidence > _ON_THING), place, most, last_row)
-        evidence = _with_colour(picture, is_seen, parallax, first, round(_AROUND / cell))
+        evidence = _with_colour(picture, is_seen, parallax, first, cell)
         outline = best_outline(evidence, edges * (evidence > _ON_THING), place, most, last_row)
         found = _judged(outline, evidence, is_seen, cell)
         if found.is_bounded:
@@ -70,14 +74,15 @@ def _edges(picture: Color, is_seen: Mask) -> Cells:
     return np.asarray(np.clip(change / _EDGE, 0.0, 1.0) * is_seen, np.float32)
 
 
-def _with_colour(picture: Color, is_seen: Mask, parallax: Parallax, outline: Outline, around: int) -> Cells:
+def _with_colour(picture: Color, is_seen: Mask, parallax: Parallax, outline: Outline, cell: float) -> Cells:
     mask = outline.mask(picture.shape)
     evidence = parallax.without(mask)
-    inside, clear, near = _resized(mask, -2), ~_resized(mask, 4), _resized(mask, around)
+    inside, clear, near = _resized(mask, -2), ~_resized(mask, 4), _resized(mask, round(_AROUND / cell))
     outside = is_seen & ((clear & near) | (evidence < -2.0))
-    return np.asarray(
-        (evidence + _COLOUR_WEIGHT * colour_evidence(picture, inside, outside)) * is_seen, np.float32
-    )
+    colour = colour_evidence(picture, inside, outside)
+    is_beyond = ~_resized(mask, round(_REACH / cell))
+    colour[is_beyond] = np.minimum(colour[is_beyond], 0.0)
+    return np.asarray((evidence + _COLOUR_WEIGHT * colour) * is_seen, np.float32)
 
 
 def _resized(mask: Mask, cells: int) -> Mask:
