@@ -14,7 +14,8 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import skew
 
-_PLANAR_ROWS = [0, 1, 5]
+PLANAR_ROWS = [0, 1, 5]
+"""x, y and heading among translation and rotation."""
 _ROCKING = 0.002
 """Pitch and roll of a chassis on its wheels, one sigma of the difference between two stops [rad]."""
 _SLIP_LEAST, _SLIP_OF_WAY = np.array([0.01, 0.005]), np.array([0.5, 0.15])
@@ -65,7 +66,7 @@ class CameraStep:
     def with_slip(self) -> "CameraStep":
         """Return the same step for wheels that may have slipped: hardly anything is known of it."""
         planar = np.zeros((6, 3))
-        planar[_PLANAR_ROWS] = np.diag(self.slip_sigmas)
+        planar[PLANAR_ROWS] = np.diag(self.slip_sigmas)
         return replace(self, by_wheels=self.second_camera_from_base @ planar)
 
     def moved(self, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -88,7 +89,7 @@ def camera_step(
     to_camera = inverse_adjoint(base_from_camera)
     planar = pose_errors([PlanarPose(), first_from_second_base], noise)[1]
     of_base = np.zeros((6, planar.shape[1] + 2))
-    of_base[_PLANAR_ROWS, :-2] = planar
+    of_base[PLANAR_ROWS, :-2] = planar
     of_base[3, -2] = of_base[4, -1] = _ROCKING
     mount = mount_noise if mount_noise is not None else MountNoise()
     sigmas = np.diag(np.repeat([mount.position_sigma, mount.angle_sigma], 3))

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from tapreach.errors import InputError
-from tapreach.estimation.camera_step import slip_sigmas
+from tapreach.estimation.camera_step import PLANAR_ROWS, slip_sigmas
 from tapreach.estimation.motion_prior import MountNoise, PoseErrors
 from tapreach.estimation.odometry_noise import OdometryNoise, carried, pose_errors
 from tapreach.estimation.step_knowledge import KNOWN, PLANAR, StepKnowledge
@@ -21,7 +21,6 @@ from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.geometry.pose import perturbed
 
-_PLANAR_ROWS = [0, 1, 5]
 SEEN_WRONG = np.array([0.0, 0.0, 0.0, 0.005, 0.005, 0.0])
 """One sigma of what the pictures of all steps have wrong in common, as an error of the mount that is not
 there [rad]: their direction of travel is drawn to where the near and stretching floor is. Measured in
@@ -54,7 +53,7 @@ class CorrectedDrive:
         """Return the step from pose number `first` to `second`, and the error (3, k) of its end, in the base
         there, per unit normal.
         """
-        by_base = self.errors.by_base[:, _PLANAR_ROWS]
+        by_base = self.errors.by_base[:, PLANAR_ROWS]
         before = _carried(self.poses[first], self.poses[second]) @ by_base[first]
         return self.poses[first].between(self.poses[second]), np.asarray(by_base[second] - before)
 
@@ -138,6 +137,6 @@ def _carried(start: PlanarPose, end: PlanarPose) -> FloatArray:
 def _errors_left(by_base: FloatArray, by_mount: FloatArray, root: FloatArray) -> PoseErrors:
     on_base = by_base.shape[2]
     in_space = np.zeros((len(by_base), 6, len(root)))
-    in_space[:, _PLANAR_ROWS] = by_base @ root[:on_base]
+    in_space[:, PLANAR_ROWS] = by_base @ root[:on_base]
     on_mount = on_base + by_mount.shape[1]
     return PoseErrors(in_space, by_mount @ root[on_base:on_mount])

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tapreach.estimation.camera_step import CameraStep
+from tapreach.estimation.camera_step import PLANAR_ROWS, CameraStep
 from tapreach.geometry.finite import FloatArray
 
 PLANAR = 3
@@ -18,7 +18,6 @@ PLANAR = 3
 HEADING, PITCH = 2, PLANAR + 3
 KNOWN = PLANAR + 6
 """Then those of the mount base_from_camera: (translation, rotation), perturbing on the right."""
-_PLANAR_ROWS = [0, 1, 5]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +70,7 @@ def _errors_by_normals(step: CameraStep) -> FloatArray:
     """Return (9, k): the errors of base and mount per unit normal; a rocking chassis has none there."""
     wheels = step.by_wheels.shape[1]
     errors = np.zeros((KNOWN, step.by_normal.shape[1]))
-    errors[:PLANAR, :wheels] = np.linalg.solve(step.second_camera_from_base, step.by_wheels)[_PLANAR_ROWS]
+    errors[:PLANAR, :wheels] = np.linalg.solve(step.second_camera_from_base, step.by_wheels)[PLANAR_ROWS]
     errors[PLANAR:, wheels:] = step.mount_root
     # Rounding must not make normals out of nothing.
     errors[np.abs(errors) < 1e-12] = 0.0

@@ -4,11 +4,14 @@ import asyncio
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from tapreach.estimation.arm_offsets import NoOffsets
 from tapreach.robot.messages import ArmPose
 from tapreach.tasks.fetch import verifying
+from tapreach.tasks.fetch.arm_workspace import ArmWorkspace
 from tapreach.tasks.fetch.arm_zero import ArmZero
 from tapreach.tasks.fetch.held import Held, HeldVerdict
 from tapreach.tasks.fetch.run import FetchRun
@@ -51,11 +54,13 @@ def fetch(monkeypatch: pytest.MonkeyPatch) -> tuple[FetchRun, Moves]:
     return run, moves
 
 
-def shown(monkeypatch: pytest.MonkeyPatch, colour: tuple[int, int, int]) -> None:
-    """From now on the camera shows a thing of that colour where the thing stood."""
+def shown(
+    monkeypatch: pytest.MonkeyPatch, colour: tuple[int, int, int], place: NDArray[np.float64] = MIDDLE
+) -> None:
+    """From now on the camera shows a thing of that colour there, or where the thing stood."""
 
     async def newest(context: Any) -> Any:
-        return frame(MIDDLE, colour)
+        return frame(place, colour)
 
     async def here(context: Any, captured_ns: int) -> Any:
         return HERE
@@ -69,7 +74,6 @@ def claw_tells(monkeypatch: pytest.MonkeyPatch, run: FetchRun, held: Held) -> No
         return held
 
     monkeypatch.setattr(verifying, "look_whether_held", look)
-    monkeypatch.setattr(verifying, "view_poses", lambda *_: (LIFTED, LIFTED))
     run.remember(zero=ArmZero(NoOffsets("not asked here"), 4))
 
 
@@ -81,6 +85,27 @@ def test_claw_never_seen_is_believed_unless_the_thing_still_stands_there(
     assert asyncio.run(verifying.verify(run)).outcome is Outcome.DONE
     shown(monkeypatch, RED)
     assert asyncio.run(verifying.verify(run)).outcome is Outcome.MISSED
+
+
+def test_what_is_alike_but_elsewhere_denies_nothing(
+    fetch: tuple[FetchRun, Moves], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As is the thing itself, held up before the camera."""
+    run, _ = fetch
+    shown(monkeypatch, RED, np.add(MIDDLE, [0.0, 0.12, 0.06]))
+    assert asyncio.run(verifying.verify(run)).outcome is Outcome.DONE
+
+
+def test_claw_never_seen_is_held_away_by_the_robot_file_to_see_past_it(
+    fetch: tuple[FetchRun, Moves], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, moves = fetch
+    shown(monkeypatch, GREEN)
+    asyncio.run(verifying.verify(run))
+    away, after = moves.arms
+    mount, tip = ROBOT.camera.mount, ArmWorkspace.of(ROBOT).tip(away)
+    assert tip[2] > mount.up and tip[1] < mount.left - 0.05 and away.claw == CLOSED.claw
+    assert after == CLOSED
 
 
 @pytest.mark.parametrize(("colour", "outcome"), [(GREEN, Outcome.DONE), (RED, Outcome.MISSED)])

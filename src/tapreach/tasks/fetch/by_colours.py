@@ -96,6 +96,15 @@ async def tap_by_colours(run: FetchRun, frame: Frame, here: PlanarPose) -> Tap |
     return None
 
 
+async def is_seen_there(run: FetchRun, frame: Frame, here: PlanarPose) -> bool:
+    """Tell whether a picture taken at `here` shows the thing's colours where it is known to be."""
+    known = run.memory.known
+    there = expected_box(known, here, run.context.description) if known is not None else None
+    if known is None or known.colours is None or there is None:
+        return False
+    return await run.context.compute.call(_found, frame.jpeg, known.colours, there, LEAST_COMMON) is not None
+
+
 def _suppositions(known: KnownThing) -> list[tuple[KnownThing, float, float]]:
     """Return what is sought one after the other: as which thing, how many times less sure of its place, and
     with how much of its colours.

@@ -15,6 +15,7 @@ from tapreach.estimation.arm_offsets import ArmOffsets, NoOffsets
 from tapreach.estimation.claw_sight import SightModel
 from tapreach.geometry.arm_clearance import ArmShape, Capsule, arm_capsules
 from tapreach.geometry.arm_kinematics import ArmJoints
+from tapreach.geometry.finite import FloatArray
 from tapreach.robot.config import RobotDescription
 from tapreach.robot.messages import ArmPose, ArmState
 from tapreach.tasks.fetch.arm_zero import ArmZero, frame_at_rest
@@ -115,13 +116,25 @@ def view_poses(description: RobotDescription, zero: ArmZero) -> tuple[ArmJoints,
     """Return what to send the servos to hold the claw away and then to show it, at one place after the other;
     none where it cannot be held away, fewer where a place is out of reach.
     """
-    mount = description.camera.mount
-    arm = zero.seen_arm(mount.base_from_camera())
+    arm = zero.seen_arm(description.camera.mount.base_from_camera())
     if arm is None:
         return ()
-    tips = [(mount.forward + ahead, mount.left + left, up) for ahead, left, up in (_AWAY, *_SHOWN)]
-    away, *shown = (arm.inverse(tip).joints for tip in tips)
+    away, *shown = (arm.inverse(_before_camera(place, description)).joints for place in (_AWAY, *_SHOWN))
     return () if away is None else (away, *(joints for joints in shown if joints is not None))
+
+
+def held_away(description: RobotDescription, zero: ArmZero | None) -> ArmJoints | None:
+    """Return what to send the servos to hold the claw away, by the robot file where the arm was never seen;
+    None where it cannot be.
+    """
+    seen = None if zero is None else zero.seen_arm(description.camera.mount.base_from_camera())
+    arm = description.arm.kinematics() if seen is None else seen
+    return arm.inverse(_before_camera(_AWAY, description)).joints
+
+
+def _before_camera(place: tuple[float, float, float], description: RobotDescription) -> FloatArray:
+    mount, (ahead, left, up) = description.camera.mount, place
+    return np.array([mount.forward + ahead, mount.left + left, up])
 
 
 def stopped_short(state: ArmState) -> bool:

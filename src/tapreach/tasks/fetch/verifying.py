@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from tapreach.robot.messages import ArmPose
 from tapreach.tasks.fetch.arm_zero import ArmZero
-from tapreach.tasks.fetch.by_colours import tap_by_colours
+from tapreach.tasks.fetch.by_colours import is_seen_there
 from tapreach.tasks.fetch.claw_show_room import WORTH_BACKING, lacking_room
-from tapreach.tasks.fetch.held import Held, HeldVerdict, least_opening, look_whether_held, view_poses
+from tapreach.tasks.fetch.held import Held, HeldVerdict, held_away, least_opening, look_whether_held
 from tapreach.tasks.fetch.looking_again import frame_from_now_on
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
@@ -48,11 +48,11 @@ def _is_apart(run: FetchRun, found: Held, width: float) -> bool:
 
 async def _by_place(run: FetchRun) -> Ended:
     """Tell by whether the thing is seen where it stood, past the claw."""
-    if run.memory.zero is not None:
-        away = view_poses(run.context.description, run.memory.zero)[0]
+    away = held_away(run.context.description, run.memory.zero)
+    if away is not None:
         claw = (await run.arm_watch.target()).claw
         await run.context.pilot.move_arm(ArmPose(away.rotation, away.shoulder, away.elbow, claw))
     frame = await frame_from_now_on(run.context)
-    if await tap_by_colours(run, frame, await pose_at(run.context, frame.captured_ns)) is not None:
+    if await is_seen_there(run, frame, await pose_at(run.context, frame.captured_ns)):
         return Ended(Outcome.MISSED, "it still stands where it was")
     return Ended(Outcome.DONE, "lifted, and not seen any more where it stood")
