@@ -42,9 +42,15 @@ def test_nothing_seen_stands_where_the_robot_or_the_thing_does(
 
 def test_what_one_look_shows_close_by_the_thing_is_taken_for_its_shadow_until_another_shows_it() -> None:
     middle, own = own_room(GOAL)
-    beside = float(middle[0]) - own - 0.04
-    assert around(seen_at(beside, float(middle[1]), radius=0.015, looks=1)) == []
-    assert len(around(seen_at(beside, float(middle[1]), radius=0.015, looks=2))) == 1
+    beside = float(middle[1]) - own - 0.04
+    assert around(seen_at(float(middle[0]), beside, radius=0.015, looks=1)) == []
+    assert len(around(seen_at(float(middle[0]), beside, radius=0.015, looks=2))) == 1
+
+
+def test_what_would_hide_the_foot_of_a_thing_that_is_seen_is_not_there() -> None:
+    middle, own = own_room(GOAL)
+    before = seen_at(float(middle[0]) - own - 0.05, float(middle[1]), radius=0.015, looks=2)
+    assert around(before) == []
 
 
 @pytest.mark.parametrize(("place_sd", "count"), [(0.005, 1), (0.02, 0), (1.0, 0)])

@@ -13,6 +13,7 @@ from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings
 from tapreach.tasks.fetch.outline import Outline
 from tapreach.tasks.fetch.remembered import SURE_LOOKS, Look, Remembered, after_look
 from tapreach.tasks.fetch.seen_obstacles import own_room, seen_obstacles
+from tapreach.tasks.fetch.seen_past import is_seen_past
 from tapreach.tasks.fetch.sight import Sight
 from tapreach.tasks.fetch.thing import Thing
 from tapreach.tasks.sighting import Sighting, is_apart
@@ -91,6 +92,8 @@ class SeenAround:
             there = each.in_world(self.poses or {})
             beside = _beside(there, float(Surroundings.of([there]).clearances(outline)[0]))
             own = radius if each.is_sure else radius + _BY_THE_THING
+            if is_seen_past(there, here, thing, description):
+                continue
             if beside is not None and not there.may_be_at(middle, own - there.spread):
                 found.append(Seen(beside, each.is_sure))
         return found
