@@ -18,7 +18,7 @@ from tapreach.tasks.fetch.reach_preview import ReachPreview
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
 from tapreach.tasks.fetch.stepping_back import BACK, LEAST_BACK, found_from_farther
-from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tapreach.tasks.fetch.thing import SAME_SIDE, NoSize, ThingSize
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import TargetLost
 from tapreach.tasks.free_way import way_behind
@@ -83,7 +83,7 @@ async def last_look(run: FetchRun) -> Ended:
     if is_lost:
         return _lost(run, f"lost the thing, {_known_to(run)}: {_loss(run)}")
     await measure(run)
-    if isinstance(run.size, NoSize):
+    if _is_to_be_measured(run):
         if anew := await _measured_anew(run):
             return anew
         run.believe_one_view()
@@ -128,16 +128,32 @@ async def _anew(run: FetchRun, steps_back: bool = False) -> Ended | None:
     return Ended(Outcome.UNSURE, f"{known_to}: located anew")
 
 
+def _is_to_be_measured(run: FetchRun) -> bool:
+    """Tell whether nothing is known of its size, or nothing of its width across this sight: that of a box may
+    be its diagonal from another side.
+    """
+    size = run.thing().size
+    if isinstance(size, NoSize):
+        return True
+    is_unseen = size.aside_of_looks(size.sight_from(run.here)) > SAME_SIDE
+    return is_unseen and size.across(size.sight_from(run.here)).width > run.filed_claw.opens_to
+
+
 async def _measured_anew(run: FetchRun) -> Ended | None:
-    """Back off from what could not be measured and end with locating it from there; None where that was done,
-    where the floor behind is not known to be free, or where nothing is followed there.
+    """Back off from what could not be measured, and end with driving up again where that has shown how large
+    it is, else with locating it from there; None where that was done, where the floor behind is not known to
+    be free, or where nothing is followed there.
     """
     back = min(BACK, way_behind(run.context.poses))
     if back < LEAST_BACK or not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
         return None
     with suppress(TargetLost):
         await drive(run, Leg(PlanarStep(0.0, -back), NEAR_SHARE, sees_thing=True))
-    return await _anew(run)
+        await measure(run)
+    if _is_to_be_measured(run):
+        return await _anew(run)
+    run.remember(looks=run.memory.looks + 1)
+    return Ended(Outcome.MISSED, "measured from farther back")
 
 
 def _is_lost(run: FetchRun, sd: float) -> bool:
