@@ -83,7 +83,7 @@ async def last_look(run: FetchRun) -> Ended:
     if is_lost:
         return _lost(run, f"lost the thing, {_known_to(run)}: {_loss(run)}")
     await measure(run)
-    if _is_to_be_measured(run):
+    if is_to_be_measured(run):
         if anew := await _measured_anew(run):
             return anew
         run.believe_one_view()
@@ -128,7 +128,7 @@ async def _anew(run: FetchRun, steps_back: bool = False) -> Ended | None:
     return Ended(Outcome.UNSURE, f"{known_to}: located anew")
 
 
-def _is_to_be_measured(run: FetchRun) -> bool:
+def is_to_be_measured(run: FetchRun) -> bool:
     """Tell whether nothing is known of its size, or nothing of its width across this sight: that of a box may
     be its diagonal from another side.
     """
@@ -150,7 +150,7 @@ async def _measured_anew(run: FetchRun) -> Ended | None:
     with suppress(TargetLost):
         await drive(run, Leg(PlanarStep(0.0, -back), NEAR_SHARE, sees_thing=True))
         await measure(run)
-    if _is_to_be_measured(run):
+    if is_to_be_measured(run):
         return await _anew(run)
     run.remember(looks=run.memory.looks + 1)
     return Ended(Outcome.MISSED, "measured from farther back")
