@@ -68,7 +68,8 @@ def picture(thing: np.ndarray | None) -> bytes:
     if thing is not None:
         u, v = (round(float(each)) for each in pixel_of(thing, HERE))
         coat = cv2.GaussianBlur(rng.normal(size=(61, 61)).astype(np.float32), (0, 0), 2.5)
-        seen[v - 30 : v + 31, u - 30 : u + 31] = 120.0 + 45.0 * coat / coat.std()
+        shown = seen[v - 30 : v + 31, u - 30 : u + 31]
+        shown[:] = (120.0 + 45.0 * coat / coat.std())[: shown.shape[0], : shown.shape[1]]
     return bytes(cv2.imencode(".jpg", np.clip(seen, 0, 255).astype(np.uint8))[1])
 
 
@@ -194,6 +195,15 @@ def test_thing_that_is_gone_or_stands_far_from_where_it_was_is_not_tapped() -> N
     assert looking_at(what, picture(None)) is None
     assert looking_at(what, picture(THING + np.array([0.05, 0.12, 0.0]))) is None
     assert looking_at(known(), picture(THING)) is None, "a picture that cannot be used"
+
+
+@pytest.mark.parametrize(("right", "is_tapped"), [(0.27, True), (0.278, False)], ids=["just inside", "gone"])
+def test_thing_at_the_edge_is_tapped_while_its_spot_is_in_the_picture(right: float, is_tapped: bool) -> None:
+    before, now = (np.array([0.6, -aside, 0.05]) for aside in (0.265, right))
+    looked = Appearance(picture(before), Pixel(*map(float, pixel_of(before, HERE))), 0.5)
+    place = replace(known(0.02).place, point_in_world=before)
+    tap = looking_at(replace(known(0.02), place=place, appearance=looked), picture(now))
+    assert (tap is not None) == is_tapped
 
 
 def tapped_unseen(sd: float, here: PlanarPose = HERE) -> tuple[Tap | None, FetchRun]:

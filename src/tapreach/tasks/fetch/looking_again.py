@@ -90,7 +90,9 @@ async def tap_again(run: FetchRun) -> Tap | None:
 
 
 async def _tap_by_looks(run: FetchRun, known: KnownThing, frame: Frame, here: PlanarPose) -> Tap | None:
-    """Return a tap where a picture taken at `here` shows it as it looked before, if it has its colours."""
+    """Return a tap where a picture taken at `here` shows it as it looked before, if it has its colours; what
+    has left the picture with the tapped spot is not seen.
+    """
     context, seen = run.context, known.appearance
     there = expected(known, here, context.description) if seen is not None else None
     if seen is None or there is None:
@@ -101,7 +103,7 @@ async def _tap_by_looks(run: FetchRun, known: KnownThing, frame: Frame, here: Pl
     if found is None:
         return None
     pixel = Pixel(*map(float, found.pixel))
-    if not await is_of_its_colours(run, frame, pixel, here):
+    if not pixel.is_inside(frame.size) or not await is_of_its_colours(run, frame, pixel, here):
         return None
     return Tap(frame.frame_id, pixel.u, pixel.v)
 
