@@ -21,15 +21,17 @@ class Rig(Protocol):
 R = TypeVar("R", bound=Rig)
 
 
-def play(make_rig: Callable[[], R], scenario: Callable[[R], Awaitable[None]]) -> None:
-    """Play it once the robot has been connected for 200 ms; end all that runs."""
+def play(
+    make_rig: Callable[[], R], scenario: Callable[[R], Awaitable[None]], after_ns: int = 200 * MS
+) -> None:
+    """Play it once the robot has been connected for `after_ns`; end all that runs."""
 
     async def run() -> None:
         rig = make_rig()
         await rig.robot.connect()
         running = asyncio.create_task(rig.loop.run())
         try:
-            await rig.pass_time(200 * MS)
+            await rig.pass_time(after_ns)
             await scenario(rig)
         finally:
             running.cancel()

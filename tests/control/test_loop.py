@@ -7,6 +7,7 @@ from math import radians
 
 import pytest
 
+from control.played import play as play_with
 from tapreach.control.authority import Authority
 from tapreach.control.deadman import Deadman, Wish
 from tapreach.control.emergency_stop import EmergencyStop
@@ -47,6 +48,9 @@ class Rig:
     def hold_forward(self) -> None:
         self.deadman.hold(Wish(FORWARD, self.clock.now_ns()))
 
+    async def pass_time(self, duration_ns: int) -> None:
+        await self.clock.advance(duration_ns)
+
     async def drive(self, duration_ns: int) -> None:
         """Hold forward at 20 Hz."""
         for _ in range(duration_ns // (50 * MS)):
@@ -75,19 +79,7 @@ Scenario = Callable[[Rig], Awaitable[None]]
 
 
 def play(description: RobotDescription, scenario: Scenario) -> None:
-    async def run() -> None:
-        rig = Rig(description)
-        await rig.robot.connect()
-        running = asyncio.create_task(rig.loop.run())
-        try:
-            await rig.clock.advance(PERIOD_NS)
-            await scenario(rig)
-        finally:
-            running.cancel()
-            await asyncio.gather(running, return_exceptions=True)
-            await rig.robot.close()
-
-    asyncio.run(run())
+    play_with(lambda: Rig(description), scenario, PERIOD_NS)
 
 
 def test_held_wish_moves_the_base(description):

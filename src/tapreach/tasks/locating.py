@@ -173,8 +173,9 @@ class Locating:
             if not is_worthwhile(choice, before):
                 return End.NO_GAIN
             planned = PlannedMove.of(choice, self._here)
-            self._say("move", 0.1 + 0.8 * move / MOST_MOVES, planned.in_words)
-            await self._make(planned)
+            progress = 0.1 + 0.8 * move / MOST_MOVES
+            self._say("move", progress, planned.in_words)
+            await self._make(planned, progress)
             if is_accurate(self._estimate, self._accuracy):
                 return End.REACHED
             if self._follower.loss:
@@ -197,7 +198,7 @@ class Locating:
             return End.REACHED
         return End.LOST if self._follower.loss else End.WAY_USED_UP
 
-    async def _make(self, planned: PlannedMove) -> None:
+    async def _make(self, planned: PlannedMove, progress: float) -> None:
         """Make the move as far as it has a purpose, once the arm is out of the picture; look."""
         arm = self._context.description.arm.standard.pose()
         watch = self._watch_over(planned)
@@ -215,9 +216,12 @@ class Locating:
             await self._context.pilot.move(PlanarStep(0.0, 0.0))
         await self._take_stop()
         if (side := self._side_to_leave()) is not None:
-            await self._go_back(planned, side)
-        way = planned.start.between(self._here)
-        self._driven += (way.x**2 + way.y**2) ** 0.5
+            self._lost_sides.append(side)
+            self._say("move", progress, f"{HIDDEN}: going back, to look from the other side")
+            await self._go_back(planned)
+        else:
+            way = planned.start.between(self._here)
+            self._driven += (way.x**2 + way.y**2) ** 0.5
         self._require_known()
 
     def _side_to_leave(self) -> LostSide | None:
@@ -227,11 +231,9 @@ class Locating:
         seen_from, description = self._follower.last.world_from_base, self._context.description
         return LostSide.between(self._first_ray, seen_from, self._here, description)
 
-    async def _go_back(self, planned: PlannedMove, side: LostSide) -> None:
+    async def _go_back(self, planned: PlannedMove) -> None:
         """Undo a move that has lost the place, and look from where it began, where it was seen."""
-        self._lost_sides.append(side)
         self._cut_short = HIDDEN
-        self._say("move", 0.5, f"{HIDDEN}: going back, to look from the other side")
         for step in way_back(planned.start, self._here):
             await self._follower.during(self._context.pilot.move(step), self._keep_up)
         await self._take_stop()

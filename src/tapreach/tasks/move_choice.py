@@ -211,9 +211,11 @@ class _Search:
 
     def _in_sight_from(self, grid: Grid) -> npt.NDArray[np.bool_]:
         """Tell (t, a) which moves do not end on a side from which the target is hidden."""
+        if not self.lost_sides:
+            return np.ones((len(grid.turns), len(grid.advances)), dtype=bool)
         ends = grid.stages_in_world(self.world_from_base)[:, :, -1] @ optics_of(self.description.camera)[2]
         hidden = [side.hides_from(ends[..., :3, 3]) for side in self.lost_sides]
-        return ~np.any(hidden, axis=0) if hidden else np.ones(ends.shape[:2], dtype=bool)
+        return np.asarray(~np.any(hidden, axis=0))
 
     def _distance(self, point_in_world: FloatArray) -> float:
         mount = self.description.camera.mount.base_from_camera()

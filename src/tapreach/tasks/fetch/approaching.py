@@ -135,8 +135,8 @@ def is_to_be_measured(run: FetchRun) -> bool:
     size = run.thing().size
     if isinstance(size, NoSize):
         return True
-    is_unseen = size.aside_of_looks(size.sight_from(run.here)) > SAME_SIDE
-    return is_unseen and size.across(size.sight_from(run.here)).width > run.filed_claw.opens_to
+    along = size.sight_from(run.here)
+    return size.aside_of_looks(along) > SAME_SIDE and size.across(along).width > run.filed_claw.opens_to
 
 
 async def _measured_anew(run: FetchRun) -> Ended | None:
