@@ -121,3 +121,15 @@ def test_views_that_contradict_each_other_are_not_mended_by_what_was_known() -> 
     views[2] = replace(views[2], pixel=Pixel(views[2].pixel.u, views[2].pixel.v + 60.0))
     alone, both = (estimate(views, ROBOT, False, known=each) for each in (None, known(0.01)))
     assert alone.status is both.status is Status.INCONSISTENT
+
+
+def test_distance_that_was_wrong_is_put_right_by_the_new_views() -> None:
+    """The claw closed on nothing: the thing never was where it was thought to be, and so surely."""
+    wrong = THING - np.array([0.06, 0.0, 0.0])
+    views = seen_from([START, START.after(PlanarStep(0.0, 0.15)), START.after(PlanarStep(0.0, 0.25))], THING)
+    sure = known(0.005)
+    mistaken = replace(sure, point_in_world=wrong).perhaps_along(0.0, 0.08)
+    np.testing.assert_allclose(mistaken.cov_in_world[1:, 1:], sure.cov_in_world[1:, 1:])
+    found = estimate(views, ROBOT, False, known=mistaken)
+    assert found.point_in_world is not None
+    assert np.linalg.norm((found.point_in_world - THING)[:2]) < 0.02

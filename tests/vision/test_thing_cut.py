@@ -49,3 +49,11 @@ def test_plain_rest_of_a_thing_is_found_by_its_colour() -> None:
     everywhere = np.ones(SHAPE, bool)
     cut = cut_out(picture((60, 90, 60)), everywhere, Drawn(evidence), (120, 70), 140, CELL)  # type: ignore[arg-type]
     assert cut.outline.top < 112 and cut.outline.bottom > 132
+
+
+@pytest.mark.parametrize("edge", [0, 105, 60], ids=["no edge", "at its top", "farther up"])
+def test_thing_that_reaches_the_end_of_the_picture_is_open_above(edge: int) -> None:
+    evidence = np.where(CUP, 2.0, -2.0).astype(np.float32)
+    in_picture = ROWS >= edge
+    cut = cut_out(picture((60, 90, 60)), in_picture, Drawn(evidence), (120, 70), 140, CELL)  # type: ignore[arg-type]
+    assert cut.is_open_above == (edge == 105)

@@ -70,6 +70,11 @@ class Footprint:
         """Return how probable it is no wider than `opening` [m] across a direction [rad, world]."""
         return float(self.odds @ (self._widths(along) <= opening))
 
+    @property
+    def is_round_odds(self) -> float:
+        """How probable it is that it is round."""
+        return float(self.odds @ self.is_round)
+
     def best_fit(self, opening: float) -> float:
         """Return `fits` in the direction in which it is greatest."""
         return max(self.fits(along, opening) for along in np.arange(_HEADINGS) * math.pi / _HEADINGS)

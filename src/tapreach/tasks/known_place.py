@@ -56,6 +56,11 @@ class KnownPlace:
         added = np.diag(np.square([across_sd, across_sd, up_sd]))
         return replace(self, cov_in_world=self.cov_in_world + added)
 
+    def perhaps_along(self, along: float, sd: float) -> "KnownPlace":
+        """Return it known less surely along a direction on the floor of the world [rad], by one sigma [m]."""
+        way = sd * np.array([math.cos(along), math.sin(along), 0.0])
+        return replace(self, cov_in_world=self.cov_in_world + np.outer(way, way))
+
 
 @dataclass(frozen=True, eq=False)
 class _Sight:

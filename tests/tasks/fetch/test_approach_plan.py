@@ -12,6 +12,7 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.fetch.approach import Approach, NoWay
 from tapreach.tasks.fetch.approach_plan import is_same, plan_approach
 from tapreach.tasks.fetch.body import Body
+from tapreach.tasks.fetch.final_leg import Sides
 from tapreach.tasks.fetch.obstacle import Obstacle, Surroundings, into, out_of
 from tapreach.tasks.fetch.passage import CLEAR, TOUCH, claw_at
 from tapreach.tasks.fetch.thing import ThingSize
@@ -229,7 +230,7 @@ def test_region_over_the_robot_itself_does_not_hold_it():
 def test_another_side_is_one_from_which_the_thing_was_not_looked_at_and_may_fit(x, y):
     size = size_at(x, y, width=0.085).seen_from(HERE)
     least = 0.5 * (size.fits(OPENS) + size.footprint.best_fit(OPENS))
-    found = planned(size, least_fit=least)
+    found = planned(size, sides=Sides(least_fit=least))
     assume(isinstance(found, Approach))
     assert isinstance(found, Approach)
     claw = found.stand.heading + found.stance.rotation
@@ -243,7 +244,7 @@ def test_side_counts_from_where_the_width_was_measured(x, sideways, heading):
     size = size_at(x, 0.0, width=0.085)
     # The base has driven aside since; from where it is now the thing is seen from another side already.
     here = PlanarPose(0.0, sideways, heading)
-    found = plan_approach(replace(size, seen_along=0.0), [], here, BODY, least_fit=0.01)
+    found = plan_approach(replace(size, seen_along=0.0), [], here, BODY, sides=Sides(least_fit=0.01))
     assume(isinstance(found, Approach))
     assert isinstance(found, Approach)
     claw = math.remainder(2.0 * (found.stand.heading + found.stance.rotation), math.tau) / 2.0

@@ -103,3 +103,18 @@ def test_outline_with_an_end_in_doubt_does_not_replace_a_width_that_is_known() -
     assert SizeDoubt().believed(blurred, cup, PlanarPose(), 0.0) is None
     from_aside = SizeDoubt().believed(blurred, cup, PlanarPose(), math.radians(40.0))
     assert from_aside is not None and from_aside.width == blurred.width
+
+
+@pytest.mark.parametrize(
+    ("x", "width", "is_settled"), [(0.2, 0.061, True), (0.01, 0.061, False), (0.2, 0.25, False)]
+)
+def test_size_against_the_known_one_is_believed_when_one_view_from_elsewhere_tells_the_same(
+    x: float, width: float, is_settled: bool
+) -> None:
+    both = replace(size_at(0.5, 0.0, 0.13), seen_along=0.0)
+    cup, doubt = size_at(0.5, 0.0, 0.06), SizeDoubt()
+    assert doubt.believed(cup, both, PlanarPose(), 0.0) is None
+    one_view = NoSize("only one view shows it", size_at(0.5, 0.0, width))
+    believed = doubt.believed(one_view, both, PlanarPose(x), 0.0)
+    assert (believed == replace(cup, told=2)) == is_settled
+    assert (doubt.against is None) == is_settled

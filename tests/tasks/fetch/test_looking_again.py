@@ -16,7 +16,7 @@ from tapreach.robot.messages import ArmPose, Frame
 from tapreach.tasks.estimating import LocatedPoint, estimate
 from tapreach.tasks.fetch.fetch_state import Mode
 from tapreach.tasks.fetch.gripping import _let_be_moved
-from tapreach.tasks.fetch.known_thing import PUSHED_SD, Appearance, KnownThing
+from tapreach.tasks.fetch.known_thing import MISTAKEN_SD, PUSHED_SD, Appearance, KnownThing
 from tapreach.tasks.fetch.looking_again import (
     expected,
     is_where_it_was,
@@ -169,6 +169,10 @@ def test_grip_that_may_have_pushed_it_leaves_its_place_less_sure_and_its_size_as
     kept = run.memory.known
     assert kept is not None and kept.size is not None and kept.size.width_sd == known().size.width_sd  # type: ignore[union-attr]
     assert math.sqrt(kept.place.cov_in_world[0, 0]) == pytest.approx(math.hypot(0.004, PUSHED_SD))
+    looked_at = kept.place_seen_from(HERE).cov_in_world
+    assert math.sqrt(looked_at[0, 0]) == pytest.approx(math.hypot(0.004, PUSHED_SD, MISTAKEN_SD), rel=0.02)
+    before = known(0.004)
+    assert before.place_seen_from(HERE) is before.place
 
 
 @pytest.mark.parametrize("aside", [0.0, 0.2])

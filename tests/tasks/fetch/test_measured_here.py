@@ -7,10 +7,11 @@ import pytest
 
 from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.fetch.approaching import is_to_be_measured
+from tapreach.tasks.fetch.believed_size import believed
 from tapreach.tasks.fetch.run import FetchRun
-from tapreach.tasks.fetch.thing import NoSize
-from tasks.fetch.looks import HERE, RED, run_after_look
-from tasks.fetch.worlds import size_at
+from tapreach.tasks.fetch.thing import NoSize, ThingSize
+from tasks.fetch.looks import HERE, RED, SPOT, run_after_look
+from tasks.fetch.worlds import BODY, size_at
 
 FROM_THE_RIGHT = PlanarPose(0.6, -0.4, math.radians(90.0))
 
@@ -38,3 +39,17 @@ def test_what_was_never_measured_is_to_be() -> None:
     run = standing(HERE, 0.05)
     run.size = NoSize("only 2 pictures of it from this side")
     assert is_to_be_measured(run)
+
+
+def test_what_was_measured_otherwise_since_is_measured_again_and_not_refused_as_too_wide() -> None:
+    """Two cans side by side looked like one; from nearer only one of them was cut out."""
+    run = standing(HERE, 0.13)
+    assert not is_to_be_measured(run)
+    run.measured(replace(size_at(0.6, 0.03, width=0.055), by_picture=True, seen_along=0.0), SPOT)
+    size = run.thing().size
+    assert isinstance(size, ThingSize) and size.width == 0.13 and size.is_doubted
+    assert is_to_be_measured(run)
+    told_twice = replace(size, told=2)
+    assert isinstance(believed(told_twice, HERE, BODY), NoSize)
+    assert believed(replace(told_twice, is_doubted=False), HERE, BODY) is not None
+    assert isinstance(believed(replace(told_twice, is_doubted=False), HERE, BODY), ThingSize)

@@ -11,8 +11,10 @@ from tapreach.errors import InputError
 from tapreach.estimation.footprint import SeenWidth
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
 from tapreach.tasks.fetch.believed_size import supposed_size
+from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.preview import OTHER_SIDES, preview
 from tapreach.tasks.fetch.reach import Verdict
+from tapreach.tasks.fetch.stand import ROTATIONS
 from tapreach.tasks.fetch.thing import NoSize, Thing, ThingSize
 from tasks.fetch.worlds import ROBOT, obstacle_at, thing_at
 
@@ -207,3 +209,66 @@ def test_place_that_is_no_number_is_refused():
     broken = replace(thing, point_in_world=np.array([math.nan, 0.0, 0.0]))
     with pytest.raises(InputError):
         preview(broken, [], HERE, ROBOT)
+
+
+@pytest.mark.parametrize("width", [0.07, 0.04])
+def test_box_that_was_gripped_in_vain_over_its_corner_is_gripped_from_another_side(width: float) -> None:
+    """What is narrow is not: there another side helps no more than another try."""
+    thing = ahead(1.0, width=width, width_sd=0.003)
+    first = preview(thing, [], HERE, ROBOT).approach
+    assert first is not None
+    missed = first.stand.heading + first.stance.rotation
+    again = preview(thing, [], HERE, ROBOT, missed_from=(missed,)).approach
+    assert again is not None
+    aside = abs(wrapped(2.0 * (again.stand.heading + again.stance.rotation - missed))) / 2.0
+    assert (aside >= math.radians(30.0)) == (width > 0.055)
+
+
+def test_what_looks_as_wide_from_all_around_is_gripped_from_the_same_side_again() -> None:
+    looks = tuple(SeenWidth(HERE.heading + aside, 0.066, 0.002) for aside in np.arange(0.0, math.pi, 0.3))
+    thing = ahead(1.0, width=0.066, width_sd=0.002)
+    round_thing = replace(thing, size=replace(thing.size, seen=looks))
+    first = preview(round_thing, [], HERE, ROBOT)
+    assert preview(round_thing, [], HERE, ROBOT, missed_from=(HERE.heading,)).path == first.path
+
+
+def test_where_no_other_side_is_free_it_is_gripped_from_where_it_was() -> None:
+    thing = ahead(0.6, width=0.07, width_sd=0.003)
+    walls = [hem(thing, math.radians(angle)) for angle in (60, 90, 120, 180, 240, 270, 300)]
+    first = preview(thing, walls, HERE, ROBOT)
+    again = preview(thing, walls, HERE, ROBOT, missed_from=(HERE.heading,))
+    assert first.approach is not None and again.path == first.path
+
+
+def hem(thing: Thing, angle: float) -> Obstacle:
+    off = 0.3 * np.array([math.cos(HERE.heading + math.pi + angle), math.sin(HERE.heading + math.pi + angle)])
+    return obstacle_at("a box", *(thing.point_in_world[:2] + off))
+
+
+def test_way_of_standing_at_the_last_look_is_kept_where_others_are_hardly_better() -> None:
+    """Or the robot turns to and fro between two."""
+    for left in np.linspace(-0.1, 0.1, 9):
+        thing = ahead(0.36, float(left), width=0.05)
+        approach = preview(thing, [], HERE, ROBOT).approach
+        assert approach is not None
+        for rotation in ROTATIONS:
+            kept = preview(thing, [], HERE, ROBOT, kept=rotation).approach
+            assert kept is not None
+            assert kept.stance.rotation in (rotation, approach.stance.rotation)
+    others = {
+        preview(ahead(0.36), [], HERE, ROBOT, kept=each).approach.stance.rotation for each in ROTATIONS[:3]
+    }
+    assert others == set(ROTATIONS[:3])
+
+
+@pytest.mark.parametrize(
+    ("height", "is_drawn", "verdict"), [(0.34, False, "no"), (0.34, True, "yes"), (0.24, False, "yes")]
+)
+def test_leg_of_a_chair_is_no_thing_unless_somebody_has_drawn_it(
+    height: float, is_drawn: bool, verdict: str
+) -> None:
+    thing = ahead(0.8, width=0.05, height=height)
+    size = replace(thing.size, by_picture=not is_drawn)
+    found = preview(replace(thing, size=size), [], HERE, ROBOT, is_last_look=True)
+    assert found.verdict == verdict
+    assert ("leg of a chair" in found.reason) == (verdict == "no")

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tapreach.estimation.footprint import SeenWidth
 from tapreach.tasks.fetch.arm_workspace import MARGIN, Unreachable
 from tapreach.tasks.fetch.claw_room import LIFT, SPARE, Claw
 from tapreach.tasks.fetch.reach import CLAW_SPARE, LEAST_ROOM, Verdict, grip_for, judge
@@ -131,3 +132,11 @@ def test_room_has_no_holes():
 def test_no_room_above_what_the_arm_reaches():
     assert CLAW.room(0.6, 0.06) is None
     assert Claw.of(ROBOT) == CLAW
+
+
+def test_what_is_surely_too_wide_by_the_newest_look_is_not_tried_for_an_older_one() -> None:
+    looks = (SeenWidth(0.0, 0.023, 0.002), SeenWidth(0.1, 0.11, 0.009))
+    wide = replace(size_at(0.5, 0.0, 0.11, width_sd=0.009), seen=looks, seen_along=0.1)
+    found = judge(wide, CLAW, is_last_look=True, seeks_another_side=False)
+    assert found.verdict is Verdict.NO and "too wide" in found.reason
+    assert judge(replace(wide, width=0.08), CLAW, True, False).verdict is Verdict.YES

@@ -143,3 +143,4 @@ def test_it_backs_off_over_free_floor_and_comes_back_with_what_it_holds(
     assert ended.outcome is (Outcome.DONE if is_held else Outcome.MISSED)
     assert moves.advances == [-0.06, 0.06][: 1 + is_held]
     assert moves.arms[-1].claw == CLOSED.claw
+    assert run.memory.missed_from == (() if is_held else (HERE.heading + CLOSED.rotation,))

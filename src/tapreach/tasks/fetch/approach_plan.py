@@ -14,7 +14,7 @@ from tapreach.geometry.planar_motion import PlanarPose, PlanarStep
 from tapreach.tasks.fetch.approach import NEAR_SHARE, Approach, Leg, NoWay
 from tapreach.tasks.fetch.body import Body, covariance_of_way
 from tapreach.tasks.fetch.detour_search import quickest_detour
-from tapreach.tasks.fetch.final_leg import Blocked, FinalLeg, Goal
+from tapreach.tasks.fetch.final_leg import ANY_SIDE, Blocked, FinalLeg, Goal, Sides
 from tapreach.tasks.fetch.obstacle import Obstacle, into
 from tapreach.tasks.fetch.passage import Passage
 from tapreach.tasks.fetch.refusal import GOAL_NAME, named, refusal, stuck
@@ -30,12 +30,12 @@ def plan_approach(
     world_from_base: PlanarPose,
     body: Body,
     free_behind: float = 0.0,
-    least_fit: float = 0.0,
+    sides: Sides = ANY_SIDE,
 ) -> Approach | NoWay:
     """Return the way from `world_from_base` to a stand before the thing, clear of `others` (in the world).
 
-    free_behind: how far straight back the floor is known to be free [m]. least_fit: arrive from where it
-    fits the claw with this probability at least. What may stand in the same place as the thing is the thing
+    free_behind: how far straight back the floor is known to be free [m]. sides: from where it is
+    to be gripped. What may stand in the same place as the thing is the thing
     itself.
     """
     middle = into(world_from_base, np.asarray(size.axis_in_world, dtype=np.float64)[None, :2])[0]
@@ -45,7 +45,7 @@ def plan_approach(
     if (touched := passage.touching) is not None:
         return stuck(touched)
     size = size.seen_from(world_from_base)
-    goal = Goal(size, middle, body, passage, world_from_base.heading, least_fit)
+    goal = Goal(size, middle, body, passage, world_from_base.heading, sides)
     found = _planned(goal, free_behind)
     return found if isinstance(found, NoWay) else found.seen_from_world(world_from_base)
 

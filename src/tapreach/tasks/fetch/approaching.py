@@ -22,6 +22,7 @@ from tapreach.tasks.fetch.thing import SAME_SIDE, NoSize, ThingSize
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import TargetLost
 from tapreach.tasks.free_way import way_behind
+from tapreach.tasks.sighting import is_apart
 
 MOST_LEGS = 24
 """Turns to look at the thing included: a way round several things needs more than a dozen."""
@@ -31,6 +32,8 @@ LOOK_ANEW_SD = 0.02
 """A thing in sight whose place is known worse [m], one sigma, is located anew from near."""
 LONGEST_LEG = 0.4
 """Farther than this the thing is not driven towards without planning anew [m]."""
+_ELSEWHERE = 0.03, math.radians(5.0)
+"""Views from farther apart than this [m, rad] tell more than one does."""
 NEAR_ENOUGH, NEAR_ENOUGH_TURN = 0.03, math.radians(3.0)
 """A leg as short as this needs not be driven before the last look."""
 
@@ -77,11 +80,11 @@ async def _not_arrived(run: FetchRun) -> str:
 
 async def last_look(run: FetchRun) -> Ended:
     """Measure the thing from near and decide on the grasp."""
-    is_lost = _is_lost(run, BLIND_SD)
-    if (is_lost or _place_sd(run) > LOOK_ANEW_SD) and (anew := await _anew(run, steps_back=is_lost)):
-        return anew
-    if is_lost:
-        return _lost(run, f"lost the thing, {_known_to(run)}: {_loss(run)}")
+    if _is_lost(run, BLIND_SD):
+        words = f"lost the thing, {_known_to(run)}: {_loss(run)}"
+        return await _anew(run, steps_back=True) or _lost(run, words)
+    if _place_sd(run) > LOOK_ANEW_SD and (surer := await _made_surer(run)):
+        return surer
     await measure(run)
     if is_to_be_measured(run):
         if anew := await _measured_anew(run):
@@ -129,11 +132,11 @@ async def _anew(run: FetchRun, steps_back: bool = False) -> Ended | None:
 
 
 def is_to_be_measured(run: FetchRun) -> bool:
-    """Tell whether nothing is known of its size, or nothing of its width across this sight: that of a box may
-    be its diagonal from another side.
+    """Tell whether nothing is known of its size, it was measured otherwise since, or nothing is known of its
+    width across this sight: that of a box may be its diagonal from another side.
     """
     size = run.thing().size
-    if isinstance(size, NoSize):
+    if isinstance(size, NoSize) or size.is_doubted:
         return True
     along = size.sight_from(run.here)
     return size.aside_of_looks(along) > SAME_SIDE and size.across(along).width > run.filed_claw.opens_to
@@ -141,19 +144,50 @@ def is_to_be_measured(run: FetchRun) -> bool:
 
 async def _measured_anew(run: FetchRun) -> Ended | None:
     """Back off from what could not be measured, and end with driving up again where that has shown how large
-    it is, else with locating it from there; None where that was done, where the floor behind is not known to
-    be free, or where nothing is followed there.
+    it is, else with locating it from there; None where that was done, or where nothing is followed there.
+    Where the floor behind is not known to be free it is located from where it stands.
     """
-    back = min(BACK, way_behind(run.context.poses))
-    if back < LEAST_BACK or not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
+    if not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
         return None
-    with suppress(TargetLost):
-        await drive(run, Leg(PlanarStep(0.0, -back), NEAR_SHARE, sees_thing=True))
-        await measure(run)
+    await _backed_off(run)
     if is_to_be_measured(run):
         return await _anew(run)
     run.remember(looks=run.memory.looks + 1)
     return Ended(Outcome.MISSED, "measured from farther back")
+
+
+async def _made_surer(run: FetchRun) -> Ended | None:
+    """End with driving up again to what is seen, but known too badly, after a step back with an eye on it;
+    with locating it from here, where there is no room behind and its views are not all from here.
+    """
+    if not run.ways.renews_on_way or run.memory.looks >= MOST_LOOKS:
+        return None
+    known_to = _known_to(run)
+    if await _backed_off(run):
+        run.remember(looks=run.memory.looks + 1)
+        return Ended(Outcome.MISSED, f"{known_to}: looked at from farther back")
+    return await _anew(run) if _is_seen_from_elsewhere(run) else None
+
+
+async def _backed_off(run: FetchRun) -> bool:
+    """Step back over floor that is known to be free, following the thing, and measure it; False for no room
+    to do so.
+    """
+    back = min(BACK, way_behind(run.context.poses))
+    if back < LEAST_BACK:
+        return False
+    with suppress(TargetLost):
+        await drive(run, Leg(PlanarStep(0.0, -back), NEAR_SHARE, sees_thing=True))
+        await measure(run)
+    return True
+
+
+def _is_seen_from_elsewhere(run: FetchRun) -> bool:
+    """Tell whether some of the views that its place rests on are not from here."""
+    estimate = run.locating.estimate if run.locating is not None else None
+    if estimate is None:
+        return True
+    return any(is_apart(view.world_from_base, run.here, *_ELSEWHERE) for view in estimate.sightings)
 
 
 def _is_lost(run: FetchRun, sd: float) -> bool:

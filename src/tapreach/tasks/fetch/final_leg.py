@@ -13,7 +13,7 @@ from tapreach.tasks.fetch.body import Body
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.passage import Passage
 from tapreach.tasks.fetch.stand import LEAST_STRETCH, Stance, stances, upright
-from tapreach.tasks.fetch.thing import ThingSize
+from tapreach.tasks.fetch.thing import ThingSize, aside_of
 
 NEVER_WHOLE_STRETCH = 0.25
 """Last look before a thing that is nowhere whole in the picture [m]."""
@@ -22,6 +22,11 @@ _LEAST_LEG = 0.02
 NOT_WHOLE_SECONDS, SIDE_SECONDS, TURNED_ARM_SECONDS = 8.0, 6.0, 3.0
 """What is worth driving longer for [s]: the whole thing in the last picture; each radian less away from the
 side that was looked at; an arm straight ahead."""
+OTHERWISE_SECONDS = 12.0
+"""At the last look another way of standing is worth it only where it is so much better [s]: or the robot
+turns to and fro between two that are alike.
+"""
+_AT_LAST_LOOK = 0.1
 IN_VAIN_SECONDS = 40.0
 """What a grasp in vain takes, or a look from yet another side [s]."""
 NEW_SIDE = math.radians(30.0)
@@ -68,11 +73,27 @@ class Blocked:
 
 
 @dataclass(frozen=True)
+class Sides:
+    """From where a thing is to be gripped; directions in the world [rad].
+
+    missed_from: not from about there, where the claw closed in vain. kept: how servo A was planned to stand
+    before [rad], None for no plan. least_fit: only from where it fits the claw with this probability, and
+    from a new side, or likely; 0: from anywhere.
+    """
+
+    missed_from: tuple[float, ...] = ()
+    kept: float | None = None
+    least_fit: float = 0.0
+
+
+ANY_SIDE = Sides()
+
+
+@dataclass(frozen=True)
 class Goal:
     """The thing in the frame of the base at the start: middle (2,) [m].
 
-    world_heading: of that base in the world [rad]. least_fit: only stands from which it fits the claw with
-    this probability, and from a new side, or likely; 0: from anywhere.
+    world_heading: of that base in the world [rad].
     """
 
     size: ThingSize
@@ -80,7 +101,7 @@ class Goal:
     body: Body
     passage: Passage
     world_heading: float = 0.0
-    least_fit: float = 0.0
+    sides: Sides = ANY_SIDE
 
     @cached_property
     def seen_along(self) -> float:
@@ -150,10 +171,13 @@ class Goal:
         return None
 
     def _is_worth(self, side: float) -> bool:
-        if self.least_fit == 0.0:
+        along, least_fit = self.seen_along + side + self.world_heading, self.sides.least_fit
+        if any(aside_of(along, missed) < NEW_SIDE for missed in self.sides.missed_from):
+            return False
+        if least_fit == 0.0:
             return True
-        is_new = self.size.aside_of_looks(self.seen_along + side + self.world_heading) >= NEW_SIDE
-        return self.fits(side) >= max(self.least_fit, 0.0 if is_new else LIKELY)
+        is_new = self.size.aside_of_looks(along) >= NEW_SIDE
+        return self.fits(side) >= max(least_fit, 0.0 if is_new else LIKELY)
 
     def _cost(self, first: PlanarStep, stretch: float, stance: Stance, is_whole: bool, side: float) -> float:
         base = self.body.base
@@ -161,4 +185,6 @@ class Goal:
         seconds += Leg(PlanarStep(0.0, stretch), NEAR_SHARE, True).seconds(base)
         seconds += 0.0 if is_whole else NOT_WHOLE_SECONDS
         seconds += TURNED_ARM_SECONDS * float(stance.rotation != 0.0)
+        if self.sides.kept is not None and first.advance < _AT_LAST_LOOK:
+            seconds += OTHERWISE_SECONDS * float(stance.rotation != self.sides.kept)
         return seconds + self.side_seconds(side)

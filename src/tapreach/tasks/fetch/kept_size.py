@@ -33,7 +33,7 @@ class SizeDoubt:
         seen_along: the new line of sight's direction in the world [rad].
         """
         if isinstance(new, NoSize):
-            believed = self._told_twice(new.by_one_view, here)
+            believed = self._confirmed(new.by_one_view, here) or self._told_twice(new.by_one_view, here)
         elif isinstance(current, NoSize) or not contradicts(new, current, seen_along):
             self.against = None
             is_known_better = isinstance(current, ThingSize) and _says_less(new, current, seen_along)
@@ -45,6 +45,16 @@ class SizeDoubt:
         if believed is not None and (isinstance(current, NoSize) or believed.told != current.told):
             self.taken_from = here
         return believed
+
+    def _confirmed(self, alone: ThingSize | None, here: PlanarPose) -> ThingSize | None:
+        """Return what was measured against the known size, where one view from elsewhere tells the same."""
+        if self.against is None or alone is None:
+            return None
+        against, there = self.against
+        if not is_apart(there, here, *_ELSEWHERE) or not agree(alone, against):
+            return None
+        self.against = None
+        return replace(against, told=2)
 
     def _told_twice(self, new: ThingSize | None, here: PlanarPose) -> ThingSize | None:
         if new is None:

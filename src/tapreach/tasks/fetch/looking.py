@@ -176,6 +176,8 @@ async def previewed(run: FetchRun, is_last_look: bool = False) -> ReachPreview:
         free_behind=way_behind(run.context.poses),
         is_last_look=is_last_look,
         other_sides=run.memory.other_sides,
+        missed_from=run.memory.missed_from,
+        kept=run.preview.approach.stance.rotation if run.preview and run.preview.approach else None,
     )
     if estimate is not None:
         await run.around.look(run.context, estimate, thing)

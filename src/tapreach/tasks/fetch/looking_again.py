@@ -61,10 +61,10 @@ async def locate_again(run: FetchRun, locating: Locating) -> str:
     """
     known = run.memory.known
     if known is not None and known.size is not None:
-        await locating.recall(known.place)
+        await locating.recall(known.place_seen_from(run.here))
     sentence = await locating.run()
     if known is not None and known.size is None:
-        await locating.recall(known.place)
+        await locating.recall(known.place_seen_from(run.here))
     return sentence
 
 

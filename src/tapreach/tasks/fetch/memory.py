@@ -21,6 +21,7 @@ class FetchMemory:
     the first. seen_again: where the thing was seen after a miss, None where it was not. gripped_at: the arm's
     pose when the claw closed, None while nothing has been gripped. zero: the arm as it was seen. way: where
     the base has been since. other_sides: how often it was too wide from near, and another side was sought.
+    missed_from: directions in the world of the claw when it closed in vain [rad].
     was_blocked: something on the way has blocked the robot. tapped: how the spot looked that the operator
     tapped, once its distance is known. is_agreed: the operator was asked, and agreed.
     """
@@ -38,6 +39,7 @@ class FetchMemory:
     zero: ArmZero | None = None
     way: tuple[PlanarPose, ...] = ()
     other_sides: int = 0
+    missed_from: tuple[float, ...] = ()
     was_blocked: bool = False
     tapped: TappedSpot | None = None
     is_agreed: bool = False

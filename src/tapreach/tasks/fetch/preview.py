@@ -6,6 +6,7 @@ A pure function of the thing, the other known things, the robot's pose and its f
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -15,8 +16,14 @@ from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.robot.config import RobotDescription
 from tapreach.tasks.fetch.approach import Approach, NoWay
 from tapreach.tasks.fetch.approach_plan import plan_approach
-from tapreach.tasks.fetch.believed_size import believed, looks_over_its_corner, supposed_size
+from tapreach.tasks.fetch.believed_size import (
+    believed,
+    looks_over_its_corner,
+    may_be_over_its_corner,
+    supposed_size,
+)
 from tapreach.tasks.fetch.body import Body
+from tapreach.tasks.fetch.final_leg import Sides
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.reach import Judgement, Verdict, judge
 from tapreach.tasks.fetch.reach_preview import ReachPreview, grasp_in_world
@@ -39,6 +46,8 @@ def preview(
     free_behind: float = 0.0,
     is_last_look: bool = False,
     other_sides: int = 0,
+    missed_from: Sequence[float] = (),
+    kept: float | None = None,
     drifts: bool = True,
 ) -> ReachPreview:
     """Return whether and how the robot, standing at `world_from_base`, can fetch the thing.
@@ -46,14 +55,17 @@ def preview(
     others: what must not be touched, in the world. free_behind: how far straight back the floor is known to
     be free [m]. is_last_look: the thing will not be measured better: widths count as they are, and what
     cannot be told then is a no. other_sides: how often another side was sought, as it was too wide from near.
-    drifts: the way keeps clear of the others by what odometry may be off there, too. Raises InputError for
-    values that are not finite, and for what is no covariance.
+    missed_from: directions in the world [rad] from which the claw closed in vain: what may have been a box
+    over its corner is gripped from another one, where a way leads there. kept: servo A as planned before
+    [rad]. drifts: the way keeps clear of the others by what odometry may be off there, too. Raises InputError
+    for values that are not finite, and for what is no covariance.
     """
     finite_array("point_in_world", thing.point_in_world, (3,))
     require_covariance("point_cov_in_world", thing.point_cov_in_world, 3)
     body = Body.of(description) if drifts else Body.of(description).without_drift()
     seeks = other_sides <= OTHER_SIDES
-    asked = _Asked(thing, others, world_from_base, body, free_behind, is_last_look, seeks)
+    sides = Sides(tuple(missed_from), kept)
+    asked = _Asked(thing, others, world_from_base, body, free_behind, is_last_look, seeks, sides)
     is_near = is_last_look or other_sides > 0
     size = thing.size if is_near else believed(thing.size, world_from_base, body)
     if isinstance(size, ThingSize):
@@ -80,6 +92,7 @@ class _Asked:
     free_behind: float
     is_last_look: bool
     seeks: bool
+    sides: Sides
 
     def unmeasured(self, why: NoSize) -> ReachPreview:
         """Plan for a usual size, as it is not known."""
@@ -122,7 +135,12 @@ class _Asked:
         return ReachPreview(judged.verdict, reason, judged.advice, size, False, seeks, way, grasp)
 
     def _way(self, size: ThingSize, least_fit: float = 0.0) -> Approach | NoWay:
-        return plan_approach(size, self.others, self.world_from_base, self.body, self.free_behind, least_fit)
+        plan = partial(plan_approach, size, self.others, self.world_from_base, self.body, self.free_behind)
+        if self.sides.missed_from and may_be_over_its_corner(size, self.body):
+            way = plan(replace(self.sides, least_fit=least_fit))
+            if isinstance(way, Approach):
+                return way
+        return plan(Sides(kept=self.sides.kept, least_fit=least_fit))
 
     def _too_high(self) -> Judgement | None:
         """Return the refusal of what was tapped too high up: where nobody drew it, the outline of what stands

@@ -10,6 +10,8 @@ from tapreach.tasks.fetch.thing import ThingSize
 
 SURE = 2.0
 """Sizes count as told where they hold with this many sigmas to spare."""
+FAR = 3.0
+"""Sigmas beyond which no other look makes a width doubtful."""
 CLAW_SPARE = 0.004
 """The claw must open by this much more than the thing is wide [m]."""
 BESIDE = 0.01
@@ -78,7 +80,7 @@ def judge(
     grip = grip_for(size, claw)
     refused = _too_high(size, claw) or _too_flat(size, claw)
     refused = refused or _too_wide(size, claw, is_last_look, seeks_another_side)
-    if size.goes_on_above and (refused is None or refused.verdict is Verdict.UNSURE):
+    if (size.goes_on_above or size.is_post) and (refused is None or refused.verdict is Verdict.UNSURE):
         return _no(_endless(size), "draw a box around it if it does end there")
     if refused is not None:
         return refused
@@ -178,12 +180,17 @@ def _too_wide(size: ThingSize, claw: Claw, is_last_look: bool, seeks: bool) -> J
         side = "look at it from another side: a box is narrower there than over its corner"
         words = f"{_mm(size.width - opens)} too wide for the claw as seen from here"
         return Judgement(Verdict.UNSURE, words, side, grip_for(size, claw), from_another_side=True)
+    is_far_too_wide = size.width - FAR * size.width_sd > opens
     is_told = is_last_look or size.width - SURE * size.width_sd > opens
-    return _no(_wider_by(size, claw), "") if is_told and size.fits(opens) < WORTH_TRYING else None
+    is_in_vain = is_far_too_wide or size.fits(opens) < WORTH_TRYING
+    return _no(_wider_by(size, claw), "") if is_told and is_in_vain else None
 
 
 def _endless(size: ThingSize) -> str:
     up_to = _mm(size.foot + size.height)
+    if not size.goes_on_above:
+        larger = "probably part of something larger, as the leg of a chair or a picture on a wall is"
+        return f"it is {_mm(size.width)} wide and {up_to} high: {larger}"
     larger = "part of something larger, as a picture on a wall is, or stands on something"
     return f"it goes on above {up_to}: {larger}"
 

@@ -154,7 +154,8 @@ class FetchRun:
         elif isinstance(self.size, NoSize) and isinstance(size, NoSize):
             self.size = size
         if isinstance(self.size, ThingSize):
-            self.size = replace(self.size, seen=self.seen)
+            is_doubted = self.size_doubt.against is not None
+            self.size = replace(self.size, seen=self.seen, is_doubted=is_doubted)
 
     def believe_one_view(self) -> None:
         """Take the size that a single view has told, where none is known and no better one is to come."""

@@ -15,6 +15,10 @@ _LOOK_SD = 0.1
 """One sigma of a width of which both sides are seen, at most; where less is known it is a lower limit."""
 
 
+_POST_WIDTH, _POST_HEIGHT = 0.1, 0.27
+"""So high, two sigmas at least, and so narrow [m] is the leg of a piece of furniture, or an edge."""
+
+
 @dataclass(frozen=True)
 class ThingSize:
     """How large the thing is and where its middle is.
@@ -25,7 +29,8 @@ class ThingSize:
     direction in the world of the line of sight across which the width was measured [rad]; None stands for
     that from where the base is. goes_on_above: its upper end was not found; `height` is as far as was looked.
     by_picture: the outline was found, not drawn by somebody. told: how often it was measured so, each time
-    from elsewhere. seen: the widths by all looks, from whatever side.
+    from elsewhere. seen: the widths by all looks, from whatever side. is_doubted: the newest measurement from
+    this side contradicts it, and neither is confirmed yet.
     """
 
     width: float
@@ -41,6 +46,14 @@ class ThingSize:
     told: int = 1
     goes_on_above: bool = False
     seen: tuple[SeenWidth, ...] = ()
+    is_doubted: bool = False
+
+    @property
+    def is_post(self) -> bool:
+        """True for what is so high by its outline as nothing that a claw can get around stands by itself."""
+        return (
+            self.by_picture and self.width < _POST_WIDTH and self.height - 2.0 * self.height_sd > _POST_HEIGHT
+        )
 
     @property
     def footprint(self) -> Footprint:
@@ -65,7 +78,7 @@ class ThingSize:
         opposite sides show the same.
         """
         looks = [look.along for look in self.seen] or [self.seen_along or 0.0]
-        return min(abs(wrapped(2.0 * (along - look))) / 2.0 for look in looks)
+        return min(aside_of(along, look) for look in looks)
 
     def fits(self, opening: float) -> float:
         """Return how probable it is that it is no wider than `opening` [m] across this sight."""
@@ -80,6 +93,13 @@ class ThingSize:
     def sight_from(self, base: PlanarPose) -> float:
         """Return the direction in the world of the line of sight from a base to its middle [rad]."""
         return math.atan2(self.axis_in_world[1] - base.y, self.axis_in_world[0] - base.x)
+
+
+def aside_of(along: float, other: float) -> float:
+    """Return the angle between two directions across which a width is seen [rad]; opposite ones show the
+    same.
+    """
+    return abs(wrapped(2.0 * (along - other))) / 2.0
 
 
 @dataclass(frozen=True)

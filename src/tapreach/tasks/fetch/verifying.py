@@ -28,7 +28,10 @@ async def verify(run: FetchRun) -> Ended:
     lifted = await run.arm_watch.target()
     ended = await (_by_place(run) if run.memory.zero is None else _by_claw(run, run.memory.zero))
     await run.context.pilot.move_arm(replace(lifted, claw=(await run.arm_watch.target()).claw))
-    if back > WORTH_BACKING and ended.outcome is Outcome.DONE:
+    if ended.outcome is Outcome.MISSED:
+        missed = run.here.heading + lifted.rotation
+        run.remember(missed_from=(*run.memory.missed_from, missed))
+    elif back > WORTH_BACKING:
         await run.context.pilot.advance(back)
     return ended
 
