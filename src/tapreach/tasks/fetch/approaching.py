@@ -136,7 +136,7 @@ def is_to_be_measured(run: FetchRun) -> bool:
     width across this sight: that of a box may be its diagonal from another side.
     """
     size = run.thing().size
-    if isinstance(size, NoSize) or size.is_doubted:
+    if isinstance(size, NoSize) or size.is_unconfirmed:
         return True
     along = size.sight_from(run.here)
     return size.aside_of_looks(along) > SAME_SIDE and size.across(along).width > run.filed_claw.opens_to

@@ -18,12 +18,15 @@ _ELSEWHERE = 0.05, math.radians(5.0)
 class SizeDoubt:
     """What was measured and not believed yet, each with where the base stood: a size `against` the one that
     is known, and one told by a single view, `alone`. Both are believed once another from elsewhere agrees.
-    taken_from: where the base stood when the known one was measured, None where that is not known.
+    taken_from: where the base stood when the known one was measured, None where that is not known. denied:
+    how often no side of it was found since, each time from elsewhere; denied_from: from where last.
     """
 
     against: tuple[ThingSize, PlanarPose] | None = None
     alone: tuple[ThingSize, PlanarPose] | None = None
     taken_from: PlanarPose | None = None
+    denied: int = 0
+    denied_from: PlanarPose | None = None
 
     def believed(
         self, new: ThingSize | NoSize, current: ThingSize | NoSize, here: PlanarPose, seen_along: float
@@ -44,7 +47,17 @@ class SizeDoubt:
             believed = replace(new, told=2) if is_told else None
         if believed is not None and (isinstance(current, NoSize) or believed.told != current.told):
             self.taken_from = here
+        self._count_denials(new, believed is not None, here)
         return believed
+
+    def _count_denials(self, new: ThingSize | NoSize, is_told: bool, here: PlanarPose) -> None:
+        if is_told:
+            self.denied, self.denied_from = 0, None
+        elif isinstance(new, NoSize) and new.denies_sides and self._is_elsewhere(here):
+            self.denied, self.denied_from = self.denied + 1, here
+
+    def _is_elsewhere(self, here: PlanarPose) -> bool:
+        return self.denied_from is None or is_apart(self.denied_from, here, *_ELSEWHERE)
 
     def _confirmed(self, alone: ThingSize | None, here: PlanarPose) -> ThingSize | None:
         """Return what was measured against the known size, where one view from elsewhere tells the same."""

@@ -10,6 +10,8 @@ from tapreach.tasks.fetch.thing import ThingSize
 
 SURE = 2.0
 """Sizes count as told where they hold with this many sigmas to spare."""
+DENIED = 2
+"""What was measured once, and so often had no sides of its own since, is part of something larger."""
 FAR = 3.0
 """Sigmas beyond which no other look makes a width doubtful."""
 CLAW_SPARE = 0.004
@@ -84,6 +86,8 @@ def judge(
         return _no(_endless(size), "draw a box around it if it does end there")
     if refused is not None:
         return refused
+    if is_last_look and size.told == 1 and size.denied >= DENIED:
+        return _no(_without_sides(size), "draw a box around it if it is a thing by itself")
     if grip is None and size.width > claw.opens_to:
         return _no(_wider_by(size, claw), "")
     if grip is None:
@@ -193,6 +197,11 @@ def _endless(size: ThingSize) -> str:
         return f"it is {_mm(size.width)} wide and {up_to} high: {larger}"
     larger = "part of something larger, as a picture on a wall is, or stands on something"
     return f"it goes on above {up_to}: {larger}"
+
+
+def _without_sides(size: ThingSize) -> str:
+    larger = "it may be part of something larger, as a picture on a wall is"
+    return f"looked {_mm(size.width)} wide once, and has no sides of its own since: {larger}"
 
 
 def _wider_by(size: ThingSize, claw: Claw) -> str:

@@ -155,7 +155,8 @@ class FetchRun:
             self.size = size
         if isinstance(self.size, ThingSize):
             is_doubted = self.size_doubt.against is not None
-            self.size = replace(self.size, seen=self.seen, is_doubted=is_doubted)
+            denied = self.size_doubt.denied
+            self.size = replace(self.size, seen=self.seen, is_doubted=is_doubted, denied=denied)
 
     def believe_one_view(self) -> None:
         """Take the size that a single view has told, where none is known and no better one is to come."""

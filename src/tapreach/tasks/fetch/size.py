@@ -107,7 +107,7 @@ def thing_size(
     alone = (
         _told(fused(whole, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE]) if whole else None
     )
-    return NoSize(_why_not(seen), alone)
+    return _unmeasured(seen, alone)
 
 
 def _from_one_side(views: Sequence[ThingView], point: FloatArray) -> list[ThingView]:
@@ -145,21 +145,24 @@ def _told(size: FusedSize, words: list[str]) -> ThingSize:
     )
 
 
-def _why_not(seen: Sequence[Seen]) -> str:
+def _unmeasured(seen: Sequence[Seen], alone: ThingSize | None) -> NoSize:
+    """Return why no two views agree on an outline; `alone`: what one of them tells."""
     if not seen:
-        return "it is too near to the camera"
+        return NoSize("it is too near to the camera", alone)
     if sum(each.cut.is_bounded for each in seen) >= 2:
-        return "the views disagree about its outline: something may hide it, or stand close to it"
+        words = "the views disagree about its outline: something may hide it, or stand close to it"
+        return NoSize(words, alone)
     unclear = next((each.cut for each in seen if not each.cut.is_bounded), None)
     if unclear is None:
-        return "only one view shows it well: locate it again from further to the side"
+        return NoSize("only one view shows it well: locate it again from further to the side", alone)
     side = "left" if unclear.bounded[0] < unclear.bounded[1] else "right"
     if max(unclear.cut_off) > _CUT:
-        return (
-            f"the picture's edge cuts it off on the {side}: look at it from where all of it is in the picture"
-        )
+        words = f"the picture's edge cuts it off on the {side}"
+        return NoSize(f"{words}: look at it from where all of it is in the picture", alone)
     if max(unclear.bounded) < BOUND:
-        return (
+        words = (
             "it lies flat on what is behind it, as a picture on a wall does, or is part of something larger"
         )
-    return f"its {side} side cannot be told from what is beside or behind it"
+    else:
+        words = f"its {side} side cannot be told from what is beside or behind it"
+    return NoSize(words, alone, denies_sides=True)

@@ -30,7 +30,8 @@ class ThingSize:
     that from where the base is. goes_on_above: its upper end was not found; `height` is as far as was looked.
     by_picture: the outline was found, not drawn by somebody. told: how often it was measured so, each time
     from elsewhere. seen: the widths by all looks, from whatever side. is_doubted: the newest measurement from
-    this side contradicts it, and neither is confirmed yet.
+    this side contradicts it, and neither is confirmed yet. denied: how often no sides of it were found since,
+    each time from elsewhere.
     """
 
     width: float
@@ -47,6 +48,7 @@ class ThingSize:
     goes_on_above: bool = False
     seen: tuple[SeenWidth, ...] = ()
     is_doubted: bool = False
+    denied: int = 0
 
     @property
     def is_post(self) -> bool:
@@ -54,6 +56,11 @@ class ThingSize:
         return (
             self.by_picture and self.width < _POST_WIDTH and self.height - 2.0 * self.height_sd > _POST_HEIGHT
         )
+
+    @property
+    def is_unconfirmed(self) -> bool:
+        """True where it was measured, or contradicted, only once, and something since speaks against it."""
+        return self.is_doubted or (self.told == 1 and self.denied > 0)
 
     @property
     def footprint(self) -> Footprint:
@@ -107,11 +114,12 @@ class NoSize:
     """Why the size cannot be told, in words a person can act on.
 
     by_one_view: what the view from nearest tells of it, where that is an outline with both sides; one alone
-    is often wrong.
+    is often wrong. denies_sides: left or right no side of its own is seen, though it is in the picture.
     """
 
     reason: str
     by_one_view: ThingSize | None = None
+    denies_sides: bool = False
 
 
 @dataclass(frozen=True)
