@@ -114,3 +114,16 @@ def test_way_of_which_nothing_is_seen_is_that_of_the_wheels() -> None:
     assert by_wheels is not None and bridged is not None
     np.testing.assert_allclose(bridged.point_in_world, by_wheels.point_in_world, atol=1e-9)
     np.testing.assert_allclose(bridged.cov_in_world, by_wheels.cov_in_world, rtol=0.02, atol=1e-7)
+
+
+def test_way_of_hundreds_of_pictures_is_that_of_the_wheels() -> None:
+    """What they say of it would take longer to reckon than it is worth."""
+    found, first = located(), PlanarPose(0.4, 0.05, 0.1)
+    seen = seen_way((first, first), (ROLLED_ON, ROLLED_ON), 2)
+    way = (
+        replace(found.sightings[-1], is_key=True),
+        *(Passed(7 + i, ROLLED_ON, seen, True) for i in range(300)),
+    )
+    by_wheels, bridged = at_present(found, ROLLED_ON, ROBOT), at_present(found, ROLLED_ON, ROBOT, way)
+    assert by_wheels is not None and bridged is not None
+    np.testing.assert_array_equal(bridged.cov_in_world, by_wheels.cov_in_world)

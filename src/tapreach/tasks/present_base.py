@@ -19,6 +19,11 @@ from tapreach.tasks.sighting import Passed, Sighting
 from tapreach.tasks.straightening import seen_steps
 from tapreach.tasks.way_error import by_way, moved_by_base
 
+_MOST_PASSED = 80
+"""After more pictures without a sight of the target what they say of the way is not worth its time, which
+grows with the cube of their number.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class PresentPoint:
@@ -45,13 +50,13 @@ def at_present(
     """Return the target seen from the base that by the wheels is at `here`; None where there is none.
 
     way: what the way since the newest sighting of `found` was seen by (see Follower.way_since). The error
-    that is left of it is added; without what was seen, that of the wheels.
+    that is left of it is added; without what was seen, and after very many pictures, that of the wheels.
     """
     point, covariance = found.point_in_world, found.point_cov_in_world
     if point is None or covariance is None:
         return None
     last = found.sightings[-1]
-    if not any(isinstance(each, Passed) for each in way):
+    if not 0 < sum(isinstance(each, Passed) for each in way) <= _MOST_PASSED:
         added = by_way(last.world_from_base, here, point, description)
         return PresentPoint(point, covariance + added, added)
     corrected, errors = _bridged(way, last.frame_id, here, description)

@@ -30,6 +30,8 @@ BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
 LOOK_ANEW_SD = 0.02
 """A thing in sight whose place is known worse [m], one sigma, is located anew from near."""
+GONE_SD = 0.4
+"""What is not seen and known no better [m], one sigma, is not driven after: it is nowhere in particular."""
 LONGEST_LEG = 0.4
 """Farther than this the thing is not driven towards without planning anew [m]."""
 _ELSEWHERE = 0.03, math.radians(5.0)
@@ -67,6 +69,8 @@ async def approach(run: FetchRun) -> Ended:
         unseen_way = unseen_way + abs(leg.step.advance) if _loss(run) and back is None else 0.0
         if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run)):
             return anew
+        if _is_lost(run, GONE_SD):
+            return _lost(run, f"lost the thing on the way, {_known_to(run)}: {_loss(run)}")
     return Ended(Outcome.CANNOT, await _not_arrived(run))
 
 
