@@ -3,7 +3,7 @@ stands.
 """
 
 import asyncio
-from collections.abc import Awaitable, Callable, Coroutine, Iterable
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
 from dataclasses import replace
 from itertools import takewhile
 from math import radians
@@ -146,11 +146,26 @@ class Follower:
         Sightings that slid are measured again or gone; a place that was lost may be found again.
         """
         checked = await self._context.compute.call(following.check, self._key)
-        self.sightings = list(checked.sightings)
+        followed, self.sightings = self.sightings, list(checked.sightings)
         self.doubt = checked.doubt
         if self.last.frame_id == self.frame_id:
             self.loss = ""
             self._passed.clear()
+        else:
+            self._pass_by(followed)
+
+    def _pass_by(self, followed: Sequence[Sighting]) -> None:
+        """Keep what is known of the way since the last sighting, where later ones were not of the target."""
+        gone = [
+            Passed(each.frame_id, each.world_from_base, each.way, each.is_key)
+            for each in followed
+            if each.way is not None
+        ]
+        ways = sorted({each.frame_id: each for each in (*gone, *self._passed)}.items())
+        self._passed.clear()
+        for frame_id, passed in ways:
+            if frame_id > self.last.frame_id:
+                self._pass(passed)
 
     async def _follow_what_is_on_its_way(self) -> None:
         """Follow the frames that were taken before now, until the next one is from now on."""

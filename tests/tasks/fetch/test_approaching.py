@@ -9,6 +9,7 @@ from tapreach.geometry.planar_motion import PlanarStep
 from tapreach.tasks.fetch import approaching
 from tapreach.tasks.fetch.approach import Leg
 from tapreach.tasks.fetch.approaching import BACK, GONE_SD, LOOK_ANEW_SD, MOST_LOOKS, last_look
+from tapreach.tasks.fetch.looking_again import loss_of, still_followed
 from tapreach.tasks.fetch.preview import preview
 from tapreach.tasks.fetch.run import Ended, FetchRun
 from tapreach.tasks.fetch.states import Outcome
@@ -91,3 +92,12 @@ def test_what_is_gone_is_not_driven_after(driven: Driven, monkeypatch: pytest.Mo
     ended = asyncio.run(approaching.approach(run))
     assert ended.outcome is Outcome.LOST and "it is hidden" in ended.why
     assert len(driven.legs) == 1
+
+
+def test_what_was_followed_here_but_not_confirmed_is_lost() -> None:
+    """A check believes only in sightings from far away: the place is not seen from here."""
+    run = run_after_look((RED, RED, RED))
+    assert loss_of(run) == "" and still_followed(run) is not None
+    run.context.poses.add(9, HERE.after(PlanarStep(0.3, 0.2)))
+    assert "not surely what was tapped" in loss_of(run)
+    assert still_followed(run) is None

@@ -12,7 +12,7 @@ from tapreach.tasks.fetch.blocked import back_off_from
 from tapreach.tasks.fetch.followed_from_here import follow_from_here, has_grown
 from tapreach.tasks.fetch.glance import glance
 from tapreach.tasks.fetch.looking import ACCURACY, MOST_LOOKS, in_words, measure, previewed
-from tapreach.tasks.fetch.looking_again import still_followed, tap_again, tap_unseen
+from tapreach.tasks.fetch.looking_again import loss_of, still_followed, tap_again, tap_unseen
 from tapreach.tasks.fetch.reach import Verdict
 from tapreach.tasks.fetch.reach_preview import ReachPreview
 from tapreach.tasks.fetch.run import Ended, FetchRun
@@ -66,11 +66,12 @@ async def approach(run: FetchRun) -> Ended:
         if blocked and (ended := await back_off_from(run, blocked)):
             return ended
         await measure(run)
-        unseen_way = unseen_way + abs(leg.step.advance) if _loss(run) and back is None else 0.0
+        unseen_way = unseen_way + abs(leg.step.advance) if loss_of(run) and back is None else 0.0
         if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run)):
             return anew
         if _is_lost(run, GONE_SD):
-            return _lost(run, f"lost the thing on the way, {_known_to(run)}: {_loss(run)}")
+            words = f"lost the thing on the way, {_known_to(run)}: {loss_of(run)}"
+            return await _anew(run, steps_back=True) or _lost(run, words)
     return Ended(Outcome.CANNOT, await _not_arrived(run))
 
 
@@ -85,7 +86,7 @@ async def _not_arrived(run: FetchRun) -> str:
 async def last_look(run: FetchRun) -> Ended:
     """Measure the thing from near and decide on the grasp."""
     if _is_lost(run, BLIND_SD):
-        words = f"lost the thing, {_known_to(run)}: {_loss(run)}"
+        words = f"lost the thing, {_known_to(run)}: {loss_of(run)}"
         return await _anew(run, steps_back=True) or _lost(run, words)
     if _place_sd(run) > LOOK_ANEW_SD and (surer := await _made_surer(run)):
         return surer
@@ -107,7 +108,7 @@ async def last_look(run: FetchRun) -> Ended:
 def _lost(run: FetchRun, why: str) -> Ended:
     """Refuse what is lost and was doubtful, be it by one view; else it ends as lost."""
     run.believe_one_view()
-    doubtful = refused_unseen(run.thing(), run.filed_claw, _loss(run))
+    doubtful = refused_unseen(run.thing(), run.filed_claw, loss_of(run))
     return Ended(Outcome.CANNOT, doubtful) if doubtful else Ended(Outcome.LOST, why)
 
 
@@ -196,15 +197,11 @@ def _is_seen_from_elsewhere(run: FetchRun) -> bool:
 
 def _is_lost(run: FetchRun, sd: float) -> bool:
     """Tell whether the thing is not seen any more, and its place not known so well [m] either."""
-    return bool(_loss(run)) and _place_sd(run) > sd
+    return bool(loss_of(run)) and _place_sd(run) > sd
 
 
 def _known_to(run: FetchRun) -> str:
     return f"its place is known to ±{2000.0 * _place_sd(run):.0f} mm only"
-
-
-def _loss(run: FetchRun) -> str:
-    return run.locating.follower.loss if run.locating is not None else "nothing follows it"
 
 
 def _place_sd(run: FetchRun) -> float:

@@ -31,6 +31,8 @@ IN_VAIN_SECONDS = 40.0
 """What a grasp in vain takes, or a look from yet another side [s]."""
 NEW_SIDE = math.radians(30.0)
 """A look from so far beside all others tells something new."""
+ROOM_BESIDE = 0.008
+"""With so much room [m] in all a box is gripped though the claw comes a few millimetres off its middle."""
 LIKELY = 0.5
 """From a side that tells nothing new it must fit with this probability."""
 
@@ -110,14 +112,16 @@ class Goal:
             return self.size.seen_along - self.world_heading
         return math.atan2(self.middle[1], self.middle[0])
 
-    def fits(self, side: float) -> float:
-        """Return how probably it fits the claw that comes from so far beside that line of sight [rad]."""
+    def fits(self, side: float, room: float = 0.0) -> float:
+        """Return how probably it fits the claw that comes from so far beside that line of sight [rad], with
+        so much room [m] in all.
+        """
         along = self.seen_along + side + self.world_heading
-        return self.size.footprint.fits(along, self.body.claw.opens_to)
+        return self.size.footprint.fits(along, self.body.claw.opens_to - room)
 
     def side_seconds(self, side: float) -> float:
         """Return what speaks against a side [s]."""
-        return SIDE_SECONDS * abs(side) + IN_VAIN_SECONDS * (1.0 - self.fits(side))
+        return SIDE_SECONDS * abs(side) + IN_VAIN_SECONDS * (1.0 - self.fits(side, ROOM_BESIDE))
 
     @cached_property
     def stances(self) -> tuple[Stance, ...]:

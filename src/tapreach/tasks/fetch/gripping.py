@@ -22,6 +22,10 @@ REACH_SPEED = 0.06
 """Of the claw around the thing [m/s]."""
 BACK_OFF = 0.15
 """How far the robot backs off to look again [m], where the way behind is free."""
+LEAN = 0.008
+"""The gripping point goes so far short of the middle [m]: a box may be less deep than it is wide, and a claw
+too deep meets it with its palm; the fingers reach beyond the middle all the same.
+"""
 _MOST_CORRECTIONS = 2
 _LEAST_CORRECTION, _MOST_MISSING = 0.008, 0.05
 
@@ -104,7 +108,7 @@ async def _come_right(run: FetchRun, way: Approach) -> ClawWay:
     """Drive what is still missing to where the arm reaches the thing, and return where the claw goes."""
     grip = way.stance.grip
     for _ in range(_MOST_CORRECTIONS):
-        missing = _ahead_of_turret(run) - grip.ahead
+        missing = _ahead_of_turret(run) - LEAN - grip.ahead
         if abs(missing) < max(_LEAST_CORRECTION, grip.spare / 2.0):
             break
         if abs(missing) > _MOST_MISSING:
@@ -114,11 +118,13 @@ async def _come_right(run: FetchRun, way: Approach) -> ClawWay:
 
 
 def aim(run: FetchRun, way: Approach) -> ClawWay:
-    """Return where the claw goes for the thing where it is now known to be, with the base where it stands."""
+    """Return where the claw goes for the thing where it is now known to be, with the base where it stands: a
+    little short of its middle.
+    """
     grip = way.stance.grip
     axis = run.in_base(run.axis_in_world())
     off = axis[:2] - run.claw.turret
-    rotation, ahead = math.atan2(off[1], off[0]), float(np.hypot(*off))
+    rotation, ahead = math.atan2(off[1], off[0]), float(np.hypot(*off)) - LEAN
     behind = ahead - (grip.ahead - grip.pre_grasp)
     tips = (run.claw.tip(each, grip.height, rotation) for each in (behind, ahead))
     return ClawWay(*tips)

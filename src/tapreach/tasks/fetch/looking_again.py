@@ -29,10 +29,13 @@ from tapreach.tasks.frame_pose import pose_at
 from tapreach.tasks.known_place import KnownPlace
 from tapreach.tasks.locating import Locating
 from tapreach.tasks.optics import optics_of
+from tapreach.tasks.sighting import is_apart
 from tapreach.tasks.task import Tap, TaskContext
 from tapreach.vision.image_io import BrokenPicture, decode_gray
 from tapreach.vision.seen_again import Expected, SeenAgain, seen_again
 
+_ELSEWHERE = 0.08, math.radians(8.0)
+"""A sight of it from farther away than this [m, rad] is none from here."""
 _SAME_SIGMAS = 4.0
 """What is located farther from where it was known to be is another thing."""
 _LEAST_STEP, _MOST_STEP = 0.06, 0.2
@@ -70,11 +73,22 @@ async def locate_again(run: FetchRun, locating: Locating) -> str:
 
 def still_followed(run: FetchRun) -> Tap | None:
     """Return a tap on the place that is being followed; None where nothing is, or it is not seen."""
-    follower = run.locating.follower if run.locating is not None else None
-    if follower is None or follower.loss or not follower.sightings:
+    if loss_of(run) or run.locating is None:
         return None
-    last = follower.last
+    last = run.locating.follower.last
     return Tap(last.frame_id, last.pixel.u, last.pixel.v)
+
+
+def loss_of(run: FetchRun) -> str:
+    """Return why the thing is not seen from here, '' where it is: also where it was followed to here, but
+    that was not confirmed as what was tapped.
+    """
+    follower = run.locating.follower if run.locating is not None else None
+    if follower is None or not follower.sightings:
+        return "nothing follows it"
+    if follower.loss or not is_apart(follower.last.world_from_base, run.here, *_ELSEWHERE):
+        return follower.loss
+    return "what was followed here is not surely what was tapped"
 
 
 async def tap_again(run: FetchRun) -> Tap | None:
