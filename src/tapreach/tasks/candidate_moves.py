@@ -26,6 +26,8 @@ NEAREST = 0.25
 LONGEST_TURN = math.radians(60.0)
 SHORTEST_ADVANCE = 0.05
 """Nothing shorter is worth starting the wheels for [m]."""
+_FINER, _HALF_FINER = 9, 5
+"""So many advances, and to either side so many turns, are tried between those beside the best."""
 BESIDE = 0.05
 """So far beside the way it has come the base may back off [m]."""
 SIGMAS = (1.0, 1.0, 0.7)
@@ -74,13 +76,16 @@ def coarse_grids(
 
 
 def finer_grid(coarse: Grid, turn: float, advance: float) -> Grid:
-    """Return candidates between the neighbours of one of `coarse`, all its advances up to there included."""
+    """Return candidates about one of `coarse`: turns up to its neighbours, advances from the one before to
+    the second one after it, as a lesser turn may allow a longer way; all longer ones, half the shorter ones.
+    """
     turns = _between_neighbours(coarse.turns, turn)
-    beside = _between_neighbours(np.sort(coarse.advances), advance)
-    beside = beside[np.abs(beside) >= SHORTEST_ADVANCE]
-    before = coarse.advances[np.abs(coarse.advances) < np.min(np.abs(beside), initial=np.inf)]
-    advances = np.unique(np.concatenate([before, beside]))
-    return Grid(turns, advances[np.argsort(np.abs(advances))])
+    ways = np.sort(np.abs(coarse.advances))
+    at = int(np.argmin(np.abs(ways - abs(advance))))
+    low, high = ways[max(at - 1, 0)], ways[min(at + 2, len(ways) - 1)]
+    about = np.linspace(low, high, _FINER)
+    kept = np.unique(np.concatenate([ways[ways < low][::2], about, ways[ways > high]]))
+    return Grid(turns, np.copysign(kept[kept >= SHORTEST_ADVANCE - 1e-12], advance))
 
 
 def is_seen_and_clear(
@@ -121,7 +126,10 @@ def _advances(longest: float) -> FloatArray:
 def _between_neighbours(values: FloatArray, value: float) -> FloatArray:
     at = int(np.argmin(np.abs(values - value)))
     low, high = values[max(at - 1, 0)], values[min(at + 1, len(values) - 1)]
-    parts: Sequence[FloatArray] = (np.linspace(low, values[at], 5), np.linspace(values[at], high, 5))
+    parts: Sequence[FloatArray] = (
+        np.linspace(low, values[at], _HALF_FINER),
+        np.linspace(values[at], high, _HALF_FINER),
+    )
     return np.unique(np.concatenate(parts))
 
 
