@@ -52,8 +52,8 @@ def test_plain_rest_of_a_thing_is_found_by_its_colour() -> None:
 
 
 @pytest.mark.parametrize("edge", [0, 105, 60], ids=["no edge", "at its top", "farther up"])
-def test_thing_that_reaches_the_end_of_the_picture_is_open_above(edge: int) -> None:
+def test_thing_that_reaches_the_end_of_the_picture_is_cut_above(edge: int) -> None:
     evidence = np.where(CUP, 2.0, -2.0).astype(np.float32)
     in_picture = edge <= ROWS
     cut = cut_out(picture((60, 90, 60)), in_picture, Drawn(evidence), (120, 70), 140, CELL)  # type: ignore[arg-type]
-    assert cut.is_open_above == (edge == 105)
+    assert cut.is_cut_above == (edge == 105)

@@ -38,13 +38,13 @@ _FOOT = 0.012
 @dataclass(frozen=True)
 class CutOut:
     """An outline; of its left and right side the share of rows bounded by something else, and by the end of
-    the picture. is_open_above: it reaches up to the end of the picture, or of what was looked at.
+    the picture. is_cut_above: it reaches up to the end of the picture.
     """
 
     outline: Outline
     bounded: tuple[float, float]
     cut_off: tuple[float, float]
-    is_open_above: bool
+    is_cut_above: bool
 
     @property
     def is_bounded(self) -> bool:
@@ -106,11 +106,11 @@ def _judged(outline: Outline, evidence: Cells, is_seen: Mask, cell: float) -> Cu
         bounded.append(float(np.mean(beside < _SOMETHING_ELSE)))
         cut_off.append(float(np.mean(~is_seen_there.any(axis=1))))
     return CutOut(
-        outline, (bounded[0], bounded[1]), (cut_off[0], cut_off[1]), _is_open_above(outline, is_seen)
+        outline, (bounded[0], bounded[1]), (cut_off[0], cut_off[1]), _is_cut_above(outline, is_seen)
     )
 
 
-def _is_open_above(outline: Outline, is_seen: Mask) -> bool:
+def _is_cut_above(outline: Outline, is_seen: Mask) -> bool:
     above, half_width = max(outline.top - 2, 0), outline.half_widths[0]
     columns = slice(max(outline.axis - half_width, 0), outline.axis + half_width + 1)
-    return outline.top == 0 or not bool(is_seen[above, columns].any())
+    return not bool(is_seen[above, columns].any())

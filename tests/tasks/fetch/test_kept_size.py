@@ -118,3 +118,16 @@ def test_size_against_the_known_one_is_believed_when_one_view_from_elsewhere_tel
     believed = doubt.believed(one_view, both, PlanarPose(x), 0.0)
     assert (believed == replace(cup, told=2)) == is_settled
     assert (doubt.against is None) == is_settled
+
+
+def test_height_up_to_the_end_of_the_picture_is_a_lower_limit() -> None:
+    """From near the picture ends below the top of what from far was seen whole."""
+    post = replace(size_at(0.5, 0.0, 0.05, 0.36), seen_along=0.0)
+    cut = replace(size_at(0.5, 0.0, 0.05, 0.25), is_cut_above=True)
+    believed = SizeDoubt().believed(cut, post, PlanarPose(), 0.0)
+    assert believed is not None and (believed.height, believed.height_sd) == (post.height, post.height_sd)
+    assert believed.axis_in_world[2] == pytest.approx(0.18) and not believed.is_cut_above
+    higher = replace(size_at(0.5, 0.0, 0.05, 0.37), is_cut_above=True)
+    assert higher.at_least_as_high_as(post) is higher
+    whole = size_at(0.5, 0.0, 0.05, 0.25)
+    assert SizeDoubt().believed(whole, post, PlanarPose(), 0.0) is None

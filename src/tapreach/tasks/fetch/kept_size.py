@@ -35,6 +35,8 @@ class SizeDoubt:
 
         seen_along: the new line of sight's direction in the world [rad].
         """
+        if isinstance(new, ThingSize) and isinstance(current, ThingSize):
+            new = new.at_least_as_high_as(current)
         if isinstance(new, NoSize):
             believed = self._confirmed(new.by_one_view, here) or self._told_twice(new.by_one_view, here)
         elif isinstance(current, NoSize) or not contradicts(new, current, seen_along):

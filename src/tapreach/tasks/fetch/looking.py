@@ -39,7 +39,7 @@ from tapreach.tasks.fetch.too_high import (
 from tapreach.tasks.fetch.unseen import refused_unseen
 from tapreach.tasks.follower import Follower, TargetLost
 from tapreach.tasks.free_way import way_behind
-from tapreach.tasks.locate_watch import HARDLY_KNOWN, is_blocked
+from tapreach.tasks.locate_watch import HARDLY_KNOWN
 from tapreach.tasks.locating import Locating
 from tapreach.tasks.target import TargetSource
 from tapreach.tasks.target_report import TargetReport
@@ -57,7 +57,7 @@ async def look(run: FetchRun) -> Ended:
     much was known of its place, or could not be located, is looked at once more. Raises as LocateTask.run.
     """
     ended = await _look_once(run)
-    could_not = ended.outcome is Outcome.UNSURE and _is_free_and_seen(run)
+    could_not = ended.outcome is Outcome.UNSURE and _is_seen(run)
     is_worth_more = could_not or (ended.outcome is Outcome.DONE and await _was_lost_early(run))
     if run.memory.looks >= MOST_LOOKS or not is_worth_more:
         return ended
@@ -65,9 +65,8 @@ async def look(run: FetchRun) -> Ended:
     return await _look_once(run)
 
 
-def _is_free_and_seen(run: FetchRun) -> bool:
-    follower = run.locating.follower if run.locating is not None else None
-    return follower is not None and not follower.loss and not is_blocked(follower.sightings)
+def _is_seen(run: FetchRun) -> bool:
+    return run.locating is not None and not run.locating.follower.loss
 
 
 async def _was_lost_early(run: FetchRun) -> bool:

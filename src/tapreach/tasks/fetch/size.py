@@ -99,7 +99,8 @@ def thing_size(
         if pair:
             told = _told(fused(pair, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE])
             goes_on = all(each.goes_on_above for each in _of(pair, seen))
-            return replace(told, goes_on_above=goes_on, seen_along=_sight_along(pair))
+            cut = all(each.cut.is_cut_above for each in _of(pair, seen))
+            return replace(told, goes_on_above=goes_on, is_cut_above=cut, seen_along=_sight_along(pair))
     wide = [each.silhouette for each in seen if each.silhouette.width > _TOLD]
     if wide and len(wide) == len(seen):
         return _told(fused(wide, point_in_world, point_cov_in_world, relative_sd), [BY_PICTURE, AT_LEAST])

@@ -31,7 +31,7 @@ class ThingSize:
     by_picture: the outline was found, not drawn by somebody. told: how often it was measured so, each time
     from elsewhere. seen: the widths by all looks, from whatever side. is_doubted: the newest measurement from
     this side contradicts it, and neither is confirmed yet. denied: how often no sides of it were found since,
-    each time from elsewhere.
+    each time from elsewhere. is_cut_above: by the picture's edge; it is at least so high.
     """
 
     width: float
@@ -49,6 +49,7 @@ class ThingSize:
     seen: tuple[SeenWidth, ...] = ()
     is_doubted: bool = False
     denied: int = 0
+    is_cut_above: bool = False
 
     @property
     def is_post(self) -> bool:
@@ -70,6 +71,18 @@ class ThingSize:
     def look_along(self, along: float) -> SeenWidth:
         """Return the width as what a look along a direction in the world [rad] tells of the outline."""
         return SeenWidth(along, self.width, min(self.width_sd, _LOOK_SD * self.width))
+
+    def at_least_as_high_as(self, known: "ThingSize") -> "ThingSize":
+        """Return it with the height that is known, where its own is only as far as the picture reaches."""
+        if not self.is_cut_above or known.height <= self.height:
+            return self
+        return replace(
+            self,
+            height=known.height,
+            height_sd=known.height_sd,
+            is_cut_above=known.is_cut_above,
+            axis_in_world=np.array([*self.axis_in_world[:2], self.foot + known.height / 2.0]),
+        )
 
     def across(self, along: float) -> "ThingSize":
         """Return the size across the direction `along` in the world [rad]: as measured where it was from

@@ -55,8 +55,8 @@ class Seen:
 
     @property
     def goes_on_above(self) -> bool:
-        """True where the outline has no upper end on the raster, or in the picture."""
-        return self.cut.is_open_above
+        """True where the outline has no upper end on the raster."""
+        return self.cut.outline.top == 0
 
 
 def views_of(
