@@ -8,9 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tapreach.estimation.footprint import SeenWidth
+from tapreach.geometry.planar_motion import PlanarPose
 from tapreach.tasks.fetch.arm_workspace import MARGIN, Unreachable
 from tapreach.tasks.fetch.claw_room import LIFT, SPARE, Claw
-from tapreach.tasks.fetch.reach import CLAW_SPARE, LEAST_ROOM, Verdict, grip_for, judge
+from tapreach.tasks.fetch.kept_size import SizeDoubt
+from tapreach.tasks.fetch.reach import CLAW_SPARE, DENIED, LEAST_ROOM, Verdict, grip_for, judge
+from tapreach.tasks.fetch.thing import NoSize
 from tasks.fetch.worlds import BODY, ROBOT, size_at
 
 CLAW = BODY.claw
@@ -140,3 +143,23 @@ def test_what_is_surely_too_wide_by_the_newest_look_is_not_tried_for_an_older_on
     found = judge(wide, CLAW, is_last_look=True, seeks_another_side=False)
     assert found.verdict is Verdict.NO and "too wide" in found.reason
     assert judge(replace(wide, width=0.08), CLAW, True, False).verdict is Verdict.YES
+
+
+def test_what_was_measured_once_and_has_no_sides_since_is_part_of_something_larger() -> None:
+    once, twice = (replace(size_at(0.5, 0.0, 0.05), told=told, denied=DENIED) for told in (1, 2))
+    found = judge(once, CLAW, is_last_look=True)
+    assert found.verdict is Verdict.NO and "part of something larger" in found.reason
+    for size, is_last_look in ((once, False), (twice, True), (replace(once, denied=DENIED - 1), True)):
+        assert judge(size, CLAW, is_last_look).verdict is Verdict.YES
+
+
+def test_no_sides_count_once_for_each_place_and_until_it_is_measured_again() -> None:
+    cup, doubt = replace(size_at(0.5, 0.0), seen_along=0.0), SizeDoubt()
+    flat = NoSize("it lies flat on what is behind it", denies_sides=True)
+    for x, count in ((0.0, 1), (0.01, 1), (0.2, 2), (0.4, 3)):
+        assert doubt.believed(flat, cup, PlanarPose(x), 0.0) is None
+        assert doubt.denied == count
+    doubt.believed(NoSize("only 2 pictures of it"), cup, PlanarPose(0.6), 0.0)
+    assert doubt.denied == 3
+    doubt.believed(cup, cup, PlanarPose(0.8), 0.0)
+    assert doubt.denied == 0

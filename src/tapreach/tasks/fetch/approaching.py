@@ -30,7 +30,7 @@ BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
 LOOK_ANEW_SD = 0.02
 """A thing in sight whose place is known worse [m], one sigma, is located anew from near."""
-GONE_SD = 0.4
+GONE_SD = 1.0
 """What is not seen and known no better [m], one sigma, is not driven after: it is nowhere in particular."""
 LONGEST_LEG = 0.4
 """Farther than this the thing is not driven towards without planning anew [m]."""

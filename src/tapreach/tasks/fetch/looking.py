@@ -54,14 +54,16 @@ GRASPING_SECONDS = 20.0
 
 async def look(run: FetchRun) -> Ended:
     """Locate the thing and measure it, unless it is too high by its line of sight alone; what was lost before
-    much was known of its place, or could not be located, is looked at once more. Raises as LocateTask.run.
+    much was known of its place, or could not be located, is looked at once more: the latter from where it is
+    followed now, as the same pictures would tell the same. Raises as LocateTask.run.
     """
     ended = await _look_once(run)
     could_not = ended.outcome is Outcome.UNSURE and _is_seen(run)
     is_worth_more = could_not or (ended.outcome is Outcome.DONE and await _was_lost_early(run))
     if run.memory.looks >= MOST_LOOKS or not is_worth_more:
         return ended
-    run.remember(looks=run.memory.looks + 1)
+    tap = still_followed(run) if could_not and run.memory.tap.box is None else None
+    run.remember(looks=run.memory.looks + 1, tap=tap or run.memory.tap)
     return await _look_once(run)
 
 

@@ -10,7 +10,7 @@ from tapreach.tasks.fetch.thing import ThingSize
 
 SURE = 2.0
 """Sizes count as told where they hold with this many sigmas to spare."""
-DENIED = 2
+DENIED = 3
 """What was measured once, and so often had no sides of its own since, is part of something larger."""
 FAR = 3.0
 """Sigmas beyond which no other look makes a width doubtful."""

@@ -60,8 +60,8 @@ class ThingSize:
 
     @property
     def is_unconfirmed(self) -> bool:
-        """True where it was measured, or contradicted, only once, and something since speaks against it."""
-        return self.is_doubted or (self.told == 1 and self.denied > 0)
+        """True where it was measured, or contradicted, only once, and more than one look since denies it."""
+        return self.is_doubted or (self.told == 1 and self.denied > 1)
 
     @property
     def footprint(self) -> Footprint:
