@@ -38,6 +38,8 @@ _ELSEWHERE = 0.08, math.radians(8.0)
 """A sight of it from farther away than this [m, rad] is none from here."""
 _SAME_SIGMAS = 4.0
 """What is located farther from where it was known to be is another thing."""
+_SPOT_SHARE = 0.5
+"""Another spot of the thing is off by this share of half its size, one sigma."""
 _LEAST_STEP, _MOST_STEP = 0.06, 0.2
 _SURELY_MET = 0.6
 """A tap unseen may miss the middle by this share of half the thing's width, one sigma."""
@@ -169,13 +171,15 @@ async def _out_of_the_picture(run: FetchRun) -> None:
 
 
 def is_where_it_was(run: FetchRun) -> bool:
-    """Tell whether the thing just located can be the one that was known before."""
+    """Tell whether the thing just located can be the one known before, be it by another spot of it."""
     known, found = run.memory.known, run.thing()
     if known is None:
         return True
     there = known.place.seen_from(run.here, run.context.description)
     off = found.point_in_world - there.point_in_world
-    off_sigmas = off @ np.linalg.solve(found.point_cov_in_world + there.cov_in_world, off)
+    half_width, half_height = _SPOT_SHARE * known.half_size
+    on_thing = np.diag(np.square([half_width, half_width, half_height]))
+    off_sigmas = off @ np.linalg.solve(found.point_cov_in_world + there.cov_in_world + on_thing, off)
     return bool(off_sigmas <= _SAME_SIGMAS**2)
 
 
