@@ -71,7 +71,7 @@ class Footprint:
         return float(self.odds @ (self._widths(along) <= opening))
 
     @property
-    def is_round_odds(self) -> float:
+    def round_odds(self) -> float:
         """How probable it is that it is round."""
         return float(self.odds @ self.is_round)
 
@@ -88,6 +88,11 @@ class Footprint:
         kept = self.odds > _UNLIKELY * self.odds.max()
         odds = self.odds[kept] / self.odds[kept].sum()
         return Footprint(self.a[kept], self.b[kept], self.heading[kept], self.is_round[kept], odds)
+
+
+def aside_of(along: float, other: float) -> float:
+    """Return the angle between two directions across which a width is seen [rad]; opposite ones are alike."""
+    return abs(wrapped(2.0 * (along - other))) / 2.0
 
 
 @lru_cache(maxsize=64)
@@ -107,7 +112,7 @@ def _share(one: SeenWidth, seen: tuple[SeenWidth, ...]) -> float:
     """Return for how much a width counts among those with its error, the surer the more; opposite sides show
     the same.
     """
-    asides = [wrapped(2.0 * (one.along - other.along)) / 2.0 for other in seen]
+    asides = [aside_of(one.along, other.along) for other in seen]
     alike = [math.exp(-0.5 * (aside / _SAME_ERROR) ** 2) for aside in asides]
     return 1.0 / sum(
         each * (one.sd_on_grid / other.sd_on_grid) ** 2 for each, other in zip(alike, seen, strict=True)

@@ -51,5 +51,4 @@ def test_what_was_measured_otherwise_since_is_measured_again_and_not_refused_as_
     assert is_to_be_measured(run)
     told_twice = replace(size, told=2)
     assert isinstance(believed(told_twice, HERE, BODY), NoSize)
-    assert believed(replace(told_twice, is_doubted=False), HERE, BODY) is not None
     assert isinstance(believed(replace(told_twice, is_doubted=False), HERE, BODY), ThingSize)

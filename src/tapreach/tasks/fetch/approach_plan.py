@@ -34,9 +34,8 @@ def plan_approach(
 ) -> Approach | NoWay:
     """Return the way from `world_from_base` to a stand before the thing, clear of `others` (in the world).
 
-    free_behind: how far straight back the floor is known to be free [m]. sides: from where it is
-    to be gripped. What may stand in the same place as the thing is the thing
-    itself.
+    free_behind: how far straight back the floor is known to be free [m]. sides: from where it is to be
+    gripped. What may stand in the same place as the thing is the thing itself.
     """
     middle = into(world_from_base, np.asarray(size.axis_in_world, dtype=np.float64)[None, :2])[0]
     here = Obstacle(GOAL_NAME, middle, middle, size.width / 2.0, 0.0)

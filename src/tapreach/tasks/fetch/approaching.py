@@ -29,7 +29,7 @@ MOST_LEGS = 24
 BLIND_SD = 0.006
 """A thing that is not seen any more is gripped where its place is known so well [m], one sigma."""
 LOOK_ANEW_SD = 0.02
-"""A thing in sight whose place is known worse [m], one sigma, is located anew from near."""
+"""A thing in sight whose place is known worse [m], one sigma, is seen from a step back, or located anew."""
 GONE_SD = 1.0
 """What is not seen and known no better [m], one sigma, is not driven after: it is nowhere in particular."""
 LONGEST_LEG = 0.4
@@ -67,11 +67,11 @@ async def approach(run: FetchRun) -> Ended:
             return ended
         await measure(run)
         unseen_way = unseen_way + abs(leg.step.advance) if loss_of(run) and back is None else 0.0
-        if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run)):
+        is_gone = _is_lost(run, GONE_SD)
+        if _is_lost(run, LOOK_ANEW_SD) and (anew := await _anew(run, steps_back=is_gone)):
             return anew
-        if _is_lost(run, GONE_SD):
-            words = f"lost the thing on the way, {_known_to(run)}: {loss_of(run)}"
-            return await _anew(run, steps_back=True) or _lost(run, words)
+        if is_gone:
+            return _lost(run, f"lost the thing on the way, {_known_to(run)}: {loss_of(run)}")
     return Ended(Outcome.CANNOT, await _not_arrived(run))
 
 

@@ -48,7 +48,7 @@ def looks_over_its_corner(size: ThingSize, body: Body) -> bool:
 def may_be_over_its_corner(size: ThingSize, body: Body) -> bool:
     """Tell whether it may be a box that was gripped over its corner, which is squeezed out of the claw."""
     is_wide = size.width >= _HARDLY_ROOM * body.claw.opens_to
-    return is_wide and size.footprint.is_round_odds < _SURELY_ROUND
+    return is_wide and size.footprint.round_odds < _SURELY_ROUND
 
 
 def supposed_size(thing: Thing, world_from_base: PlanarPose) -> ThingSize:

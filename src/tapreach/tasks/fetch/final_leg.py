@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from tapreach.estimation.footprint import aside_of
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose, PlanarStep, wrapped
 from tapreach.tasks.fetch.approach import NEAR_SHARE, Leg
@@ -13,7 +14,7 @@ from tapreach.tasks.fetch.body import Body
 from tapreach.tasks.fetch.obstacle import Obstacle
 from tapreach.tasks.fetch.passage import Passage
 from tapreach.tasks.fetch.stand import LEAST_STRETCH, Stance, stances, upright
-from tapreach.tasks.fetch.thing import ThingSize, aside_of
+from tapreach.tasks.fetch.thing import ThingSize
 
 NEVER_WHOLE_STRETCH = 0.25
 """Last look before a thing that is nowhere whole in the picture [m]."""

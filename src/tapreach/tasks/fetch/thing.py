@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tapreach.estimation.footprint import Footprint, SeenWidth, footprint
+from tapreach.estimation.footprint import Footprint, SeenWidth, aside_of, footprint
 from tapreach.geometry.finite import FloatArray
 from tapreach.geometry.planar_motion import PlanarPose, wrapped
 
@@ -113,13 +113,6 @@ class ThingSize:
     def sight_from(self, base: PlanarPose) -> float:
         """Return the direction in the world of the line of sight from a base to its middle [rad]."""
         return math.atan2(self.axis_in_world[1] - base.y, self.axis_in_world[0] - base.x)
-
-
-def aside_of(along: float, other: float) -> float:
-    """Return the angle between two directions across which a width is seen [rad]; opposite ones show the
-    same.
-    """
-    return abs(wrapped(2.0 * (along - other))) / 2.0
 
 
 @dataclass(frozen=True)
